@@ -12,6 +12,9 @@ from scipy.signal import lfilter
 from noise.base import log_uniform as log_uniform
 from noise.base.arrays import Array, Rng
 
+Span = tuple[float, float]
+"""Start and end of a sound in a recording [s]."""
+
 
 def coloured_noise(n: int, slope: float, rng: Rng) -> Array:
     """Return noise of unit standard deviation with a spectral density of ``f ** -slope``.

@@ -51,19 +51,8 @@ _MATERIALS = {
 SHAPES = {"weakening_exponent"}
 """Parameters of laws that do not vary between designs."""
 
-_NEAR = 0.35
-"""Share of the designs close to the shipped rigs, with a scatter of some per cent."""
-
-_INTERFERENCES = (0.178e-3, 0.279e-3, 0.381e-3)
-"""Interferences of the thesis [m]."""
-
-_SUPPORTS = (2214.0, 3745.0, math.inf)
-"""Support stiffnesses of the thesis [Nm/rad]."""
-
 
 _EXTRAS = packaged_toml("noise.training.classifier", "extras.toml")
-
-_SHARE_OF_DEAR = 0.02
 
 
 @dataclass(frozen=True)
@@ -94,9 +83,9 @@ def random_design(rng: Rng) -> Design:
     # Half of them are tight, to creak, the others looser and fast enough to squeal.
     tight = bool(rng.random() < 0.5)
     interference = float(rng.uniform(0.32e-3, 0.42e-3) if tight else rng.uniform(0.15e-3, 0.34e-3))
-    near = bool(rng.random() < _NEAR)
+    near = bool(rng.random() < 0.35)
     if near:
-        middle = _INTERFERENCES[2 if tight else int(rng.integers(2))]
+        middle = 0.381e-3 if tight else (0.178e-3, 0.279e-3)[int(rng.integers(2))]
         interference = middle * math.exp(rng.normal(0.0, 0.02))
     scatter = 0.17 if near else 1.0
     stiffness = math.exp(scatter * rng.normal(0.0, 0.3))
@@ -118,9 +107,9 @@ def random_design(rng: Rng) -> Design:
             for spec in rig.effects
         ),
         plate=rig.plate if near else _random_plate(rig.plate, rng),
-        microphone=rig.microphone if near else _random_microphone(rng),
+        microphone=rig.microphone if near else Microphone(_random_place(rng)),
     )
-    support = float(rng.choice(_SUPPORTS))
+    support = float(rng.choice((2214.0, 3745.0, math.inf)))
     if near and math.isfinite(support):
         support *= math.exp(rng.normal(0.0, 0.02))
     elif rng.random() < 0.4:
@@ -180,10 +169,9 @@ def _jittered(
     )
 
 
-def _random_microphone(rng: Rng) -> Microphone:
-    return Microphone(
-        (float(rng.uniform(-0.8, 0.8)), float(rng.uniform(-0.8, 0.8)), float(rng.uniform(0.2, 1.5)))
-    )
+def _random_place(rng: Rng) -> tuple[float, float, float]:
+    x, y, z = rng.uniform((-0.8, -0.8, 0.2), (0.8, 0.8, 1.5)).tolist()
+    return x, y, z
 
 
 def _random_plate(plate: Plate, rng: Rng) -> Plate:
@@ -215,7 +203,7 @@ def random_extras(present: tuple[LawSpec, ...], rng: Rng) -> tuple[LawSpec, ...]
     (18, 2)
     """
     chance = rng.random()
-    if chance < _SHARE_OF_DEAR:
+    if chance < 0.02:
         pool, n = _EXTRAS["dear"], 1
     elif chance < 0.35:
         pool, n = _EXTRAS["usual"], int(rng.integers(1, 3))
@@ -230,18 +218,6 @@ def random_extras(present: tuple[LawSpec, ...], rng: Rng) -> tuple[LawSpec, ...]
         extras.append(LawSpec(names[i], {"form": form, **draw_numbers(pool[names[i]], rng)}))
     return tuple(extras)
 
-
-_SHARES = {"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}
-"""Shares of the wanted labels."""
-
-_MOST_TRIES = 20
-"""Maximum number of previews."""
-
-_SPARE_SQUAWKS = 0.5
-"""Probability of drawing again after a squawk instead of the wanted label."""
-
-_WHERE_LIKELY = 0.85
-"""Probability of drawing a design again if the wanted label is rare there."""
 
 _PIECE = 0.25
 """Duration of the labelled pieces of a run of varying speed [s]."""
@@ -271,19 +247,15 @@ def random_run(rng: Rng) -> LabelledRun:
     >>> drawn.label in ("creak", "squawk", "squeal", "none")
     True
     """
-    wanted = picked(_SHARES, rng)
+    wanted = picked({"creak": 0.34, "squawk": 0.17, "squeal": 0.32, "none": 0.17}, rng)
     for attempt in itertools.count():
         design = random_design(rng)
-        while not _likely(design, wanted) and rng.random() < _WHERE_LIKELY:
+        while not _likely(design, wanted) and rng.random() < 0.85:
             design = random_design(rng)
-        design = replace(
-            design,
-            rig=replace(
-                design.rig, effects=design.rig.effects + random_extras(design.rig.effects, rng)
-            ),
-        )
+        extras = random_extras(design.rig.effects, rng)
+        design = replace(design, rig=replace(design.rig, effects=design.rig.effects + extras))
         try:
-            if attempt < _MOST_TRIES and _guessed(design) != wanted:
+            if attempt < 20 and _guessed(design) != wanted:
                 continue
             labelled = _labelled(design, rng)
         except ParameterError:  # an impossible design
@@ -291,7 +263,7 @@ def random_run(rng: Rng) -> LabelledRun:
         if labelled is None:
             continue
         spare = labelled.label == "squawk" != wanted
-        if not (spare and rng.random() < _SPARE_SQUAWKS):
+        if not (spare and rng.random() < 0.5):
             return labelled
     raise AssertionError  # unreachable: the loop is infinite
 
@@ -358,9 +330,11 @@ def _labelled(design: Design, rng: Rng) -> LabelledRun | None:
             labelled = _uniform_part(run)
     else:
         labelled = _uniform_part(run)
-    if labelled is None or (labelled.label != "none" and _drowned(labelled.run)):
-        return None
-    return labelled
+    if labelled is None or labelled.label == "none":
+        return labelled
+    sensed, computed = labelled.run.recording["pressure"], labelled.run.pressure
+    drowned = float(sensed.std()) > 1.5 * float(computed.std())  # by the noise of the sensor
+    return None if drowned else labelled
 
 
 def _random_shaft(speed: float, seconds: float, rng: Rng) -> ShaftMotion:
@@ -412,8 +386,3 @@ def _uniform_part(run: Run) -> LabelledRun | None:
     unclear = sum(map(is_ambiguous, criteria[first : first + length]))
     part = stretch(run, first * _PIECE, (first + length) * _PIECE)
     return LabelledRun(part, label, 2 * unclear > length)
-
-
-def _drowned(run: Run) -> bool:
-    """Whether the sensor noise exceeds the sound."""
-    return float(run.recording["pressure"].std()) > 1.5 * float(run.pressure.std())

@@ -18,7 +18,7 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -42,21 +42,19 @@ from noise.training.classifier.cross_fitting import (
     named_as,
 )
 from noise.training.classifier.own_recordings import own_card
+from noise.training.classifier.recorder import augmented
 from noise.training.classifier.samples import (
+    QUIET_DB,
     Drawn,
     Sample,
     described,
     draw_sample,
-    sound_recording,
     swelling,
 )
 from noise.training.draws import log_uniform, low_pass
 
 N_TRAINING = 4300
 """Number of training samples."""
-
-_MADE_UP = 0.6
-"""Number of additional samples without bushings, per training sample."""
 
 _KIND = ModelKind(
     "set of real sounds",
@@ -84,15 +82,8 @@ _CLEAN = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
 _WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
 """Weights of real sounds, relative to a simulated sample [-]; chosen on left-out sources."""
 
-_QUIET_DB = 30.0
-"""Level below the loudest window from which a window is a pause [dB]."""
-
 _VARIATIONS = 20
 """Number of variations of each noise: parts at other speeds, in other places and recorders."""
-
-_SPEEDS = (0.78, 1.28)
-_LENGTHS = (0.15, 2.5)
-"""Relative speed [-] and duration [s] of a variation."""
 
 _RATE = 48_000.0
 """Sampling rate of variations [Hz]."""
@@ -101,20 +92,8 @@ _COLUMNS = [i for i, name in enumerate(FEATURE_NAMES) if name.startswith("pressu
 """Columns of the features of real sounds."""
 
 
-@dataclass(frozen=True, eq=False)
-class RealSounds:
-    """Features of real sounds.
-
-    Parameters
-    ----------
-    samples : tuple of Sample
-        Whole sounds and variations.
-    licences : mapping of str to str
-        Licences by source.
-    """
-
-    samples: tuple[Sample, ...]
-    licences: Mapping[str, str]
+RealSounds = tuple[tuple[Sample, ...], Mapping[str, str]]
+"""Samples of whole sounds and of variations, and licences by source."""
 
 
 def load_real_sounds() -> RealSounds:
@@ -122,7 +101,7 @@ def load_real_sounds() -> RealSounds:
 
     Examples
     --------
-    >>> sorted({sample.label for sample in load_real_sounds().samples})
+    >>> sorted({sample.label for sample in load_real_sounds()[0]})
     ['creak', 'squawk', 'squeal', 'unknown']
     """
     return load_model(None, _KIND, _built)
@@ -139,7 +118,7 @@ def describe_folder(folder: Path) -> RealSounds:
             continue
         recording = read_recording(folder / row["file"])
         windows = window_features(RecordingBlocks.of(recording).track(0))
-        loud = windows.level > windows.level.max() - _QUIET_DB
+        loud = windows.level > windows.level.max() - QUIET_DB
         source, kind = _source(row["source"], row["licence"]), Path(row["file"]).stem
         samples.append(_sample(windows.features[loud], label, source, kind))
         licences[source] = row["licence"]
@@ -148,16 +127,16 @@ def describe_folder(folder: Path) -> RealSounds:
             for _ in range(_VARIATIONS):
                 features = described(_varied(recording.samples[0], recording.rate, rng)).features
                 samples.append(_sample(features, label, source, kind, varied=True))
-    return RealSounds(tuple(samples), licences)
+    return tuple(samples), licences
 
 
 def _varied(sound: Array, rate: float, rng: Rng) -> Drawn:
     """Return a random variation of a loud part of a sound."""
-    n = min(sound.size, round(log_uniform(*_LENGTHS, rng) * rate))
+    n = min(sound.size, round(log_uniform(0.15, 2.5, rng) * rate))
     loudest = np.abs(sound).max()
     parts = [sound[first : first + n] for first in rng.integers(0, sound.size - n + 1, 10)]
     part = next((one for one in parts if np.abs(one).max() > 0.5 * loudest), parts[-1])
-    step = log_uniform(*_SPEEDS, rng) * rate / _RATE
+    step = log_uniform(0.78, 1.28, rng) * rate / _RATE
     if step > 1.0:  # against aliasing
         part = low_pass(part, 0.45 * _RATE, rate)
     part = np.interp(np.arange(0.0, part.size - 1.0, step), np.arange(part.size), part)
@@ -167,7 +146,7 @@ def _varied(sound: Array, rate: float, rng: Rng) -> Drawn:
     part[part.size - fade :] *= ramp[::-1]
     before, after = (rng.uniform(0.0, 0.7, 2) * _RATE).astype(int) if rng.random() < 0.5 else (0, 0)
     span = (before / _RATE, (before + part.size) / _RATE)
-    recording, span = sound_recording(np.pad(part, (before, after)), _RATE, rng, span=span)
+    recording, span = augmented(np.pad(part, (before, after)), _RATE, rng, span=span)
     return swelling(Drawn(recording, "", "", span), rng)
 
 
@@ -193,19 +172,20 @@ def _sample(
 
 
 def _store(sounds: RealSounds, path: Path) -> None:
+    samples, licences = sounds
     header = {
         "feature_names": FEATURE_NAMES,
-        "labels": [s.label for s in sounds.samples],
-        "sources": [s.source for s in sounds.samples],
-        "kinds": [s.kind for s in sounds.samples],
-        "varied": [s.varied for s in sounds.samples],
-        "licences": sounds.licences,
+        "labels": [s.label for s in samples],
+        "sources": [s.source for s in samples],
+        "kinds": [s.kind for s in samples],
+        "varied": [s.varied for s in samples],
+        "licences": licences,
         "card": {},
     }
-    features = np.concatenate([s.features for s in sounds.samples])
+    features = np.concatenate([s.features for s in samples])
     arrays = {
         "features": features[:, _COLUMNS].astype(np.float16),
-        "counts": np.array([len(s.features) for s in sounds.samples]),
+        "counts": np.array([len(s.features) for s in samples]),
     }
     save_model(path, _KIND, header, arrays)
 
@@ -217,10 +197,8 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Rea
     x[:, _COLUMNS] = arrays["features"]
     each = np.split(x, np.cumsum(arrays["counts"])[:-1])
     columns = (header[name] for name in ("labels", "sources", "kinds", "varied"))
-    return RealSounds(
-        tuple(_sample(*one, varied=varied) for *one, varied in zip(each, *columns, strict=True)),
-        header["licences"],
-    )
+    samples = (_sample(*one, varied=varied) for *one, varied in zip(each, *columns, strict=True))
+    return tuple(samples), header["licences"]
 
 
 def train(
@@ -261,24 +239,24 @@ def train(
 
     >>> train(seed=1).save("mine.npz")  # doctest: +SKIP
     """
-    n_made_up = round(_MADE_UP * n_training)
+    n_made_up = round(0.6 * n_training)
     seeds = np.random.SeedSequence((seed, 1)).spawn(n_made_up)
     seeds += np.random.SeedSequence(seed).spawn(n_training)
     drawn: Iterable[Sample] = Parallel(n_jobs=-1, return_as="generator")(
         delayed(draw_sample)(one, bushings=i >= n_made_up) for i, one in enumerate(seeds)
     )
-    real = load_real_sounds()
+    real, licences = load_real_sounds()
     classifier = learn(
         list(progress(drawn, len(seeds)) if progress else drawn),
         seed=seed,
-        real=real.samples,
+        real=real,
         added=added,
         growing=growing,
     )
     card = {
         "seed": seed,
-        "real_sounds": _counts(sample for sample in real.samples if not sample.varied),
-        "licences": sorted(f"{name}: {licence}" for name, licence in real.licences.items()),
+        "real_sounds": _counts(sample for sample in real if not sample.varied),
+        "licences": sorted(f"{name}: {licence}" for name, licence in licences.items()),
     }
     return replace(classifier, card=card | dict(classifier.card))
 

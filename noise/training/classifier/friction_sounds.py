@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -36,7 +35,7 @@ from noise.training.classifier.friction_mechanisms import (
     random_drive,
     slide,
 )
-from noise.training.draws import coloured_noise, log_uniform, low_pass, wandering
+from noise.training.draws import Span, coloured_noise, log_uniform, low_pass, wandering
 
 FRICTION_SOUNDS: Mapping[str, Mapping[str, Any]] = packaged_toml(
     "noise.training.classifier", "friction_sounds.toml"
@@ -52,33 +51,8 @@ _PITCHED = 150.0
 _REGULAR = 0.06
 """Median logarithmic change between sticks below which harmonics stand out [-]."""
 
-_CHIRP_S = (0.1, 0.5)
-"""Range of the duration of a short squeal [s]."""
 
-
-@dataclass(frozen=True, eq=False)
-class FrictionSound:
-    """Synthetic friction sound.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        Samples of unit peak [-].
-    label : str
-        creak, squawk or squeal.
-    span : tuple of float
-        Start and end of the friction [s].
-    ambiguous : bool
-        Whether the label is close to a bound of its definition.
-    """
-
-    samples: Array
-    label: str
-    span: tuple[float, float]
-    ambiguous: bool = False
-
-
-def friction_sound(name: str, n: int, rate: float, rng: Rng) -> FrictionSound:
+def friction_sound(name: str, n: int, rate: float, rng: Rng) -> tuple[Array, Span, bool]:
     """Return a random sound of a body.
 
     Parameters
@@ -90,11 +64,21 @@ def friction_sound(name: str, n: int, rate: float, rng: Rng) -> FrictionSound:
         [Hz]
     rng : numpy.random.Generator
 
+    Returns
+    -------
+    samples : ndarray, shape (n,)
+        Samples of unit peak [-].
+    span : tuple of float
+        Start and end of the friction [s].
+    ambiguous : bool
+        Whether the label is close to a bound of its definition.
+
     Examples
     --------
-    >>> sound = friction_sound("belt_squeal", 24_000, 48e3, np.random.default_rng(0))
-    >>> sound.samples.shape, sound.label, round(float(np.abs(sound.samples).max()), 6)
-    ((24000,), 'squeal', 1.0)
+    >>> sound, span, ambiguous = friction_sound("belt_squeal", 24_000, 48e3,
+    ...                                         np.random.default_rng(0))
+    >>> sound.shape, round(float(np.abs(sound).max()), 6)
+    ((24000,), 1.0)
     """
     row = FRICTION_SOUNDS[name]
     m = int(n / rate * ENVELOPE_RATE) + 2
@@ -110,9 +94,7 @@ def friction_sound(name: str, n: int, rate: float, rng: Rng) -> FrictionSound:
         sound = make(load, row, n, rate, rng)
         rubbing = np.flatnonzero(load > _CONTACT) / ENVELOPE_RATE
         span = (float(rubbing[0]), float(rubbing[-1]))
-    return FrictionSound(
-        sound / np.abs(sound).max(), row["label"], (span[0], min(span[1], n / rate)), ambiguous
-    )
+    return sound / np.abs(sound).max(), (span[0], min(span[1], n / rate)), ambiguous
 
 
 def contact_load(row: Mapping[str, Any], m: int, rng: Rng) -> Array:
@@ -141,7 +123,7 @@ def contact_load(row: Mapping[str, Any], m: int, rng: Rng) -> Array:
     alone = chirping and rng.random() < 0.5
     bouts, gaps = row.get("bout_s"), row.get("gap", [0.0, 0.5])
     if chirping:
-        bouts, gaps = _CHIRP_S, [0.1, 3.0]
+        bouts, gaps = [0.1, 0.5], [0.1, 3.0]
     load = np.zeros(m) if bouts else np.full(m, rng.uniform(0.8, 1.2))
     start = 0 if rng.random() < 0.5 else int(rng.uniform(0.0, 0.6 if alone else 0.15) * m)
     while start < m and bouts:

@@ -57,9 +57,6 @@ def in_a_room(sound: Array, rate: float, rng: Rng) -> Array:
     return np.asarray(fftconvolve(sound, taps)[: sound.size])
 
 
-_SHAPE_SPREAD = 4.0
-"""Standard deviation of a random spectrum around its shape at each point [dB]."""
-
 _ROAD = (
     (20, 0), (32, 0), (63, -6), (125, -17), (250, -28), (500, -36), (900, -41), (1600, -50),
     (3000, -61), (6000, -74), (12000, -88),
@@ -175,7 +172,7 @@ def shaped_noise(n: int, rate: float, shape: Sequence[tuple[float, float]], rng:
     """
     at, level = np.array(shape, dtype=np.float64).T
     octave = np.log2(at)
-    level = level + rng.normal(0.0, _SHAPE_SPREAD, at.size)
+    level = level + rng.normal(0.0, 4.0, at.size)
     level += rng.uniform(-2.0, 2.0) * (octave - octave.mean())
     m = next_fast_len(n, real=True)
     frequency = np.maximum(rfftfreq(m, 1.0 / rate), 10.0)
@@ -341,29 +338,8 @@ HALLS: Mapping[str, Callable[[int, float, Rng], Array]] = {
 PLACES = (*CABINS, *HALLS)
 """Families of cabins and halls."""
 
-_AUDIBLE_DB = 3.0
-"""Minimum level of an audible sound above the place, in its best half octave [dB]."""
-
-_AUDIBLE_SHARE = 0.95
-"""Quantile of the frames that must be audible [-]."""
-
 _FRAME = 0.032
 """Duration of a frame [s]."""
-
-_PAUSE_DB = 18.0
-"""Level below the loudest frame from which a frame is a pause [dB]."""
-
-_LIFTS = (0.0, 10.0, 20.0, 40.0)
-"""Gains by which a sound is raised until it is audible for long enough [dB]."""
-
-_SHORTEST = 0.5
-"""Minimum duration of the audible part [s]."""
-
-_LONGEST_PAUSE = 0.3
-"""Maximum duration of a pause within a sound [s]; blows of a creak are closer."""
-
-_BANDS = 160.0 * 2.0 ** (0.5 * np.arange(12))
-"""Edges of half octaves [Hz]."""
 
 
 def place(
@@ -440,10 +416,11 @@ def in_a_place(
         return surroundings, (0.0, sound.size / rate)
     share = level / (float(around.std()) + 1e-300) * 10.0 ** (-snr / 20.0)
     stands = _stands_out(weighted, share * around, rate)
-    lift = max(0.0, _AUDIBLE_DB - float(np.quantile(stands, _AUDIBLE_SHARE)))
-    for more in _LIFTS:
+    # Raised to 3 dB above the place, then further until half a second is audible.
+    lift = max(0.0, 3.0 - float(np.quantile(stands, 0.95)))
+    for more in (0.0, 10.0, 20.0, 40.0):
         span = _longest(stands + lift + more > 0.0, sound.size / rate)
-        if span[1] - span[0] >= _SHORTEST:
+        if span[1] - span[0] >= 0.5:
             break
     else:  # the sound itself has pauses
         span = (0.0, sound.size / rate)
@@ -479,24 +456,31 @@ def a_weighted(sound: Array, rate: float) -> Array:
 def _stands_out(sound: Array, surroundings: Array, rate: float) -> Array:
     """Return the level of a sound above a place in its best half octave, by frame [dB].
 
-    Pauses of the sound have -300 dB.
+    Pauses of the sound, 18 dB below its loudest frame, have -300 dB.
     """
     frame = round(_FRAME * rate)
     of_sound, around = (
         np.abs(np.fft.rfft(x[: x.size // frame * frame].reshape(-1, frame) * np.hanning(frame)))
         for x in (sound, surroundings)
     )
-    edges = np.unique(np.minimum(np.round(_BANDS * frame / rate).astype(int), frame // 2))[:-1]
+    edges = np.unique(
+        np.minimum(
+            np.round(160.0 * 2.0 ** (0.5 * np.arange(12)) * frame / rate).astype(int), frame // 2
+        )
+    )[:-1]
     power = np.add.reduceat(of_sound**2, edges, axis=1)
     mean = np.add.reduceat(around**2, edges, axis=1).mean(axis=0)
     stands = 10.0 * np.log10((power / (mean + 1e-300)).max(axis=1) + 1e-300)
-    pause = power.sum(axis=1) < 10.0 ** (-0.1 * _PAUSE_DB) * power.sum(axis=1).max()
+    pause = power.sum(axis=1) < 10.0**-1.8 * power.sum(axis=1).max()
     return np.where(pause, -300.0, stands)
 
 
 def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
-    """Return start and end of the longest run of frames, with short pauses closed [s]."""
-    reach = 2 * round(0.5 * _LONGEST_PAUSE / _FRAME) + 1
+    """Return start and end of the longest run of frames [s]; pauses of up to 0.3 s are closed.
+
+    Blows of a creak are closer.
+    """
+    reach = 2 * round(0.15 / _FRAME) + 1
     closed = minimum_filter1d(maximum_filter1d(sounds.astype(int), reach), reach)
     edges = np.flatnonzero(np.diff(np.r_[0, closed, 0]))
     if not edges.size:

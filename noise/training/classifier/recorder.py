@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import soundfile
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import firwin, lfilter, oaconvolve, resample_poly
 
+from models.recording import Channel, Recording
 from noise.base.arrays import Array, Rng
 from noise.training.classifier.places import a_weighted, background, in_a_place, in_a_room, place
-from noise.training.draws import coloured_noise, log_uniform, low_pass, picked, wandering
+from noise.training.draws import Span, coloured_noise, log_uniform, low_pass, picked, wandering
 
 _BANDS = {
     "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),
@@ -160,8 +160,6 @@ def clipped(sound: Array, rng: Rng) -> Array:
 _AT_ONCE = 4096
 """Frames per call of an encoder; the Vorbis encoder of libsndfile overflows its stack on many."""
 
-_MP3_RATES = (16_000, 22_050, 24_000, 32_000, 44_100, 48_000)
-
 
 def coded(sound: Array, rate: int, rng: Rng) -> Array:
     """Return a sound of the same length after a random lossy codec.
@@ -185,7 +183,7 @@ def coded(sound: Array, rate: int, rng: Rng) -> Array:
     cutoff = min(rng.uniform(10e3, 17e3), 0.45 * rate)
     if kind < 0.45:
         decoded = _round_trip(sound, rate, "OGG", "VORBIS", quality)
-    elif kind < 0.75 and rate in _MP3_RATES:
+    elif kind < 0.75 and rate in (16_000, 22_050, 24_000, 32_000, 44_100, 48_000):
         decoded = _round_trip(sound, rate, "MP3", "MPEG_LAYER_III", quality)
     else:
         decoded = None
@@ -244,45 +242,10 @@ def _round_trip(
 RATES = (16_000, 22_050, 30_000, 32_000, 44_100, 48_000, 96_000)
 """Sampling rates of recordings [Hz]."""
 
-_LOW_RATES = (8_000, 11_025, 12_000)
-"""Sampling rates of telephones and small files [Hz]."""
 
-_LOW = 0.12
-"""Share of the clips with a low rate, if enough of the sound remains [-]."""
-
-_LEFT = 0.5
-"""Minimum share of the A-weighted power that remains at a low rate [-]."""
-
-_IN_A_PLACE = 0.5
-"""Share of the clips recorded in a place of engineers [-]."""
-
-_SNR = (-15.0, 30.0)
-"""Range of the level of a sound above its place [dB(A)]."""
-
-_KINDS = {"free": 0.62, "phone": 0.28, "pocket": 0.05, "stethoscope": 0.05}
-"""Shares of the microphones [-]."""
-
-_LONGEST = 5.0
-"""Maximum duration of a padded clip [s]."""
-
-
-@dataclass(frozen=True, eq=False)
-class RecordedSound:
-    """Recorded sound.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n,)
-        Samples relative to full scale [-].
-    rate : int
-        Sampling rate [Hz].
-    span : tuple of float
-        Start and end of the sound in the clip [s]; the rest is silence or background.
-    """
-
-    samples: Array
-    rate: int
-    span: tuple[float, float]
+def sound_recording(samples: Array, rate: float) -> Recording:
+    """Return an uncalibrated recording of a sound, shape (n,)."""
+    return Recording(samples[None, :], float(rate), (Channel("pressure"),), calibrated=False)
 
 
 def resampled(signal: Array, rate: float, wanted: float) -> Array:
@@ -318,8 +281,8 @@ def recorded(
     rng: Rng,
     *,
     kind: str = "free",
-    span: tuple[float, float] | None = None,
-) -> tuple[Array, tuple[float, float]]:
+    span: Span | None = None,
+) -> tuple[Array, Span]:
     """Return a sound recorded in a random room or place by a random microphone.
 
     Parameters
@@ -344,9 +307,9 @@ def recorded(
     lasts = span or (0.0, sound.size / rate)
     span = lasts
     signal = in_a_room(sound, rate, rng) if rng.random() < 0.7 else sound
-    if rng.random() < _IN_A_PLACE:
+    if rng.random() < 0.5:  # in a place of engineers, by so many dB(A) above it
         around = place(sound.size, rate, rng)
-        signal, span = in_a_place(signal, around, rate, rng.uniform(*_SNR))
+        signal, span = in_a_place(signal, around, rate, rng.uniform(-15.0, 30.0))
         span = (max(span[0], lasts[0]), min(span[1], lasts[1]))
         span = span if span[1] > span[0] else lasts
     signal = through_a_microphone(signal, rate, rng, kind=kind)
@@ -358,8 +321,8 @@ def recorded(
 
 
 def augmented(
-    sound: Array, rate: float, rng: Rng, *, span: tuple[float, float] | None = None
-) -> RecordedSound:
+    sound: Array, rate: float, rng: Rng, *, span: Span | None = None
+) -> tuple[Recording, Span]:
     """Return a sound recorded with a random microphone, rate, gain, codec and cut.
 
     Parameters
@@ -372,17 +335,27 @@ def augmented(
     span : tuple of float, optional
         Start and end of the sound; by default all of it [s].
 
+    Returns
+    -------
+    recording : Recording
+        One uncalibrated channel of pressure.
+    span : tuple of float
+        Start and end of the sound in the clip [s]; the rest is silence or background.
+
     Examples
     --------
-    >>> clip = augmented(np.sin(np.arange(24_000.0)), 48e3, np.random.default_rng(0))
+    >>> clip, span = augmented(np.sin(np.arange(24_000.0)), 48e3, np.random.default_rng(0))
     >>> clip.rate in RATES, bool(np.abs(clip.samples).max() <= 1.0)
     (True, True)
     """
     wanted = int(rng.choice(RATES))
-    low = int(rng.choice(_LOW_RATES)) if rng.random() < 2.0 * _LOW else wanted
-    if low < wanted and not _left(sound, rate, low):
-        low = wanted
-    kind = picked(_KINDS, rng)
+    # Telephones and small files, if half of the A-weighted power remains.
+    low = int(rng.choice((8_000, 11_025, 12_000))) if rng.random() < 0.24 else wanted
+    if low < wanted:
+        left = float(a_weighted(resampled(sound, rate, low), low).std()) ** 2
+        if left < 0.5 * float(a_weighted(sound, rate).std()) ** 2:
+            low = wanted
+    kind = picked({"free": 0.62, "phone": 0.28, "pocket": 0.05, "stethoscope": 0.05}, rng)
     signal, lasts = recorded(sound, rate, rng, kind=kind, span=span)
     signal = resampled(signal, rate, wanted)
     if low < wanted and rng.random() < 0.5:
@@ -403,7 +376,7 @@ def augmented(
         samples = np.clip(coded(samples, wanted, rng), -1.0, 1.0)
     if rng.random() < 0.5:
         samples = quantised(samples, 8 if rng.random() < 0.06 and peak > 0.3 else 16, rng)
-    return RecordedSound(samples, wanted, lasts)
+    return sound_recording(samples, wanted), lasts
 
 
 def _cut(sound: Array, rate: int, rng: Rng) -> tuple[Array, float]:
@@ -414,13 +387,7 @@ def _cut(sound: Array, rate: int, rng: Rng) -> tuple[Array, float]:
         return np.pad(sound, (before, 0)), before / rate
     if rng.random() < 0.65:
         return sound, 0.0
-    spare = min(_LONGEST - duration, duration) * rng.uniform(0.1, 1.0)
+    spare = min(5.0 - duration, duration) * rng.uniform(0.1, 1.0)
     before = int(spare * rate * (rng.random() if rng.random() < 0.4 else 0.0))
     after = max(int(spare * rate) - before, 0)
     return np.pad(sound, (before, after)), before / rate
-
-
-def _left(sound: Array, rate: float, low: float) -> bool:
-    """Whether enough of a sound remains at a low rate."""
-    audible = float(a_weighted(sound, rate).std()) ** 2
-    return float(a_weighted(resampled(sound, rate, low), low).std()) ** 2 >= _LEFT * audible

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from features.windows.table import HOP, LENGTH
 from models.blocks import RecordingBlocks
 from models.recording import Channel, Recording
-from noise.base.arrays import Array, Rng
+from noise.base.arrays import Rng
 from noise.labels.windows import window_features
 from noise.training.classifier.background_sounds import WEIGHTS, background_sound
 from noise.training.classifier.bushings import LabelledRun, random_run
@@ -25,31 +25,22 @@ from noise.training.classifier.friction_sounds import (
     friction_sound,
 )
 from noise.training.classifier.places import quiet
-from noise.training.classifier.recorder import augmented, recorded, with_sensor_noise
-from noise.training.draws import log_uniform, picked, wandering
+from noise.training.classifier.recorder import (
+    augmented,
+    recorded,
+    sound_recording,
+    with_sensor_noise,
+)
+from noise.training.draws import Span, log_uniform, picked, wandering
 from sim.acquisition import Acquisition
 
 _CHANNELS = ("torque", "acceleration", "pressure")
-
-_PRESSURE_ALONE = 0.45
-"""Share of the bushings with the sound alone; the others have three channels."""
-
-_AS_COMPUTED = 0.3
-"""Share of the recordings with three channels that are as simulated, in a quiet room."""
-
-_QUIET_ROOM = Acquisition().noise
-
-_AUDIBLE = 6e-4
-"""Standard deviation of audible sensor noise, 30 dB re 20 uPa [Pa]."""
 
 _RATE = 48_000.0
 """Sampling rate of friction sources and background sounds [Hz]."""
 
 SHARES = {"bushing": 0.31, "friction": 0.26, "background": 0.30, "quiet": 0.13}
 """Shares of the samples [-]."""
-
-_LABEL_SHARES = {"creak": 0.41, "squeal": 0.41, "squawk": 0.18}
-"""Shares of the labels among friction sources [-]."""
 
 SOURCES = (
     "bushing",
@@ -59,21 +50,8 @@ SOURCES = (
 )
 """Names of all sources."""
 
-_EVEN = 0.35
-"""Share of the samples without a modulation of the level."""
-
-_FADES_OUT, _FADES_IN = 0.5, 0.35
-_LOWEST = -80.0
-"""Level at the end of a fade [dB]."""
-
-_QUIET_DB = 30.0
+QUIET_DB = 30.0
 """Level below the loudest window from which a window is a pause and not learned [dB]."""
-
-_OUTSIDE = 0.2
-"""Maximum part of a window outside of the span of the label [s]."""
-
-_OF_EVENT = 0.9
-"""Minimum share of a short event in a window [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +75,7 @@ class Drawn:
     recording: Recording
     label: str
     source: str
-    span: tuple[float, float]
+    span: Span
     ambiguous: bool = False
 
 
@@ -154,9 +132,10 @@ def described(drawn: Drawn) -> Sample:
     start = np.arange(len(windows.features)) * HOP
     end = np.minimum(start + LENGTH, drawn.recording.duration)
     inside = np.minimum(end, drawn.span[1]) - np.maximum(start, drawn.span[0])
-    # Window features of a short event describe the event alone (`features.windows.events`).
-    enough = np.minimum(end - start - _OUTSIDE, _OF_EVENT * (drawn.span[1] - drawn.span[0]))
-    chosen = (inside >= enough) & (windows.level > windows.level.max() - _QUIET_DB)
+    # All but 0.2 s of a window is in the span, or 0.9 of a short event: window features describe
+    # the event alone (`features.windows.events`).
+    enough = np.minimum(end - start - 0.2, 0.9 * (drawn.span[1] - drawn.span[0]))
+    chosen = (inside >= enough) & (windows.level > windows.level.max() - QUIET_DB)
     chosen[np.argmax(inside + 1e-6 * windows.level)] |= not chosen.any()
     return Sample(windows.features[chosen], drawn.label, drawn.source, ambiguous=drawn.ambiguous)
 
@@ -184,7 +163,7 @@ def draw(rng: Rng, *, bushings: bool = True) -> Drawn:
     if group == "background":
         return draw_from(f"background:{picked(WEIGHTS, rng)}", rng)
     if group == "friction":
-        label = picked(_LABEL_SHARES, rng)
+        label = picked({"creak": 0.41, "squeal": 0.41, "squawk": 0.18}, rng)
         rows = {n: row["weight"] for n, row in FRICTION_SOUNDS.items() if row["label"] == label}
         return draw_from(f"friction:{picked(rows, rng)}", rng)
     return draw_from(group, rng)
@@ -206,18 +185,18 @@ def draw_from(source: str, rng: Rng) -> Drawn:
     n = int(seconds * _RATE)
     group, _, name = source.partition(":")
     if group == "friction":
-        made = friction_sound(name, n, _RATE, rng)
-        clip, span = sound_recording(made.samples, _RATE, rng, span=made.span)
-        return Drawn(clip, made.label, source, span, made.ambiguous)
+        rubbed, span, ambiguous = friction_sound(name, n, _RATE, rng)
+        clip, span = augmented(rubbed, _RATE, rng, span=span)
+        return Drawn(clip, FRICTION_SOUNDS[name]["label"], source, span, ambiguous)
     sound = quiet(n, _RATE, rng) if group == "quiet" else background_sound(n, _RATE, rng, name)
     label = "none" if group == "quiet" else "unknown"
     if not sound.any():  # digital silence is not augmented
-        return Drawn(_of_sound(sound, _RATE), label, source, (0.0, n / _RATE))
-    clip, span = sound_recording(sound, _RATE, rng)
+        return Drawn(sound_recording(sound, _RATE), label, source, (0.0, n / _RATE))
+    clip, span = augmented(sound, _RATE, rng)
     return Drawn(clip, label, source, span)
 
 
-def bushing_recording(drawn: LabelledRun, rng: Rng) -> tuple[Recording, tuple[float, float]]:
+def bushing_recording(drawn: LabelledRun, rng: Rng) -> tuple[Recording, Span]:
     """Return a random recording of a run: the sound alone, or three channels.
 
     Parameters
@@ -241,17 +220,15 @@ def bushing_recording(drawn: LabelledRun, rng: Rng) -> tuple[Recording, tuple[fl
     """
     run = drawn.run.recording
     torque, acceleration, pressure = (run[kind] for kind in _CHANNELS)
-    # Inaudible sound must not be amplified above the noise.
-    if drawn.label == "none" and pressure.std() <= _AUDIBLE:
+    # Inaudible sound, of 30 dB re 20 uPa, must not be amplified above the noise.
+    if drawn.label == "none" and pressure.std() <= 6e-4:
         pressure = np.zeros_like(pressure)
-    if rng.random() < _PRESSURE_ALONE:
-        clip, span = sound_recording(pressure, run.rate, rng)
+    if rng.random() < 0.45:  # the sound alone
+        clip, span = augmented(pressure, run.rate, rng)
         return replace(clip, condition=run.condition), span
-    if rng.random() < _AS_COMPUTED:
-        rows = [
-            run[kind] + _QUIET_ROOM[kind] * rng.standard_normal(run[kind].size)
-            for kind in _CHANNELS
-        ]
+    if rng.random() < 0.3:  # as simulated, in a quiet room
+        noise = Acquisition().noise
+        rows = [run[kind] + noise[kind] * rng.standard_normal(run[kind].size) for kind in _CHANNELS]
     else:
         rows = [
             *with_sensor_noise(torque, acceleration, rng),
@@ -260,26 +237,6 @@ def bushing_recording(drawn: LabelledRun, rng: Rng) -> tuple[Recording, tuple[fl
     channels = tuple(Channel(kind) for kind in _CHANNELS)
     recording = Recording(np.stack(rows), run.rate, channels, run.condition, calibrated=False)
     return recording, (0.0, run.duration)
-
-
-def sound_recording(
-    sound: Array, rate: float, rng: Rng, *, span: tuple[float, float] | None = None
-) -> tuple[Recording, tuple[float, float]]:
-    """Return a random recording of a sound; arguments as in `augmented`.
-
-    Returns
-    -------
-    recording : Recording
-        One uncalibrated channel of pressure.
-    span : tuple of float
-        Start and end of the sound [s].
-    """
-    clip = augmented(sound, rate, rng, span=span)
-    return _of_sound(clip.samples, float(clip.rate)), clip.span
-
-
-def _of_sound(samples: Array, rate: float) -> Recording:
-    return Recording(samples[None, :], rate, (Channel("pressure"),), calibrated=False)
 
 
 def swelling(drawn: Drawn, rng: Rng) -> Drawn:
@@ -295,17 +252,17 @@ def swelling(drawn: Drawn, rng: Rng) -> Drawn:
     Drawn
     """
     recording = drawn.recording
-    if len(recording.channels) > 1 or rng.random() < _EVEN:
+    if len(recording.channels) > 1 or rng.random() < 0.35:
         return drawn
     n, rate = recording.samples.shape[1], recording.rate
     time = np.arange(n) / rate
     depth, speed = rng.uniform(0.0, 8.0), rng.uniform(0.3, 4.0)
     level = depth * wandering(n, rate, speed, rng)
-    if rng.random() < _FADES_OUT:
+    if rng.random() < 0.5:  # fades out
         start = rng.uniform(0.1, 1.0) * time[-1]
         level -= log_uniform(15.0, 250.0, rng) * np.maximum(time - start, 0.0)
-    if rng.random() < _FADES_IN:
+    if rng.random() < 0.35:  # fades in
         end = rng.uniform(0.0, 0.5) * time[-1]
         level -= log_uniform(30.0, 600.0, rng) * np.maximum(end - time, 0.0)
-    gain = 10.0 ** (np.maximum(level - level.max(), _LOWEST) / 20.0)
+    gain = 10.0 ** (np.maximum(level - level.max(), -80.0) / 20.0)
     return replace(drawn, recording=replace(recording, samples=recording.samples * gain))

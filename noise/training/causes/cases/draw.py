@@ -120,15 +120,6 @@ SHARED = 4
 WEAKEST = 0.02
 """Least strength of an effect that is drawn."""
 
-_VARIANTS = 0.65
-"""Share of the effects that have none of the simulator's own forms."""
-
-_IRREGULAR = 0.25
-"""Share of the cases with effects that have more of an irregularity that the rig file lists."""
-
-_TORQUE_PER_K, _STIFFNESS_PER_K = -0.005, -0.003
-"""By what a rubber whose file states no dependence differs when it is warmer."""
-
 _SLOW = 3.0
 """Of coloured noise and of drift, over the white noise of a good sensor at most [-]."""
 
@@ -246,8 +237,7 @@ def _warmer(rig: Rig, warmer: float) -> Rig:
     """
     if rig.temperature is not None:
         return rig
-    torque = 1.0 + _TORQUE_PER_K * warmer
-    stiffness = 1.0 + _STIFFNESS_PER_K * warmer
+    torque, stiffness = 1.0 - 0.005 * warmer, 1.0 - 0.003 * warmer
     return with_offsets(
         rig,
         {"elastomer_stiffness": stiffness, "critical_torque": torque, "kinetic_torque": torque},
@@ -268,7 +258,7 @@ def _draw_cause(rig: Rig, rng: Rng) -> tuple[Truth, list[ActiveEffect]]:
     offered = sorted(set(EFFECTS) - listed - _without_effect(rig))
     count = {"one": 1, "pair": 2, "triple": 3}.get(kind, 0)
     names = rng.choice(offered, count, replace=False).tolist()
-    if names and more and not set(more) & set(names) and rng.random() < _IRREGULAR:
+    if names and more and not set(more) & set(names) and rng.random() < 0.25:
         names[0] = str(rng.choice(more))
     strengths = tuple(_strength(rng) for _ in names)
     effects = [active_effect(name, a, rng) for name, a in zip(names, strengths, strict=True)]
@@ -301,7 +291,7 @@ def unknown_effect(name: str, strength: float, fit: Fit, rng: Rng) -> ActiveEffe
 def active_effect(name: str, strength: float, rng: Rng) -> ActiveEffect:
     """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
     spec = drawn_effect(name, strength, rng)
-    if rng.random() < _VARIANTS:
+    if rng.random() < 0.65:
         return draw_variant(name, strength, rng).active({})
     return EFFECTS[name].active(spec.parameters)
 

@@ -25,6 +25,7 @@ from models.sensors import Sensor, Sensors
 from noise.base import log_uniform, packaged_toml
 from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import draw_numbers, drawn_effect
+from noise.training.draws import picked
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import EFFECTS, constant_version
 from sim.friction import friction_law
@@ -174,35 +175,8 @@ NOISE_DRAWN = (0.7, 1.6)
 SIZES = ("elastomer_inertia", "clamp_inertia", "elastomer_stiffness", "torque", "support")
 """What a bench of another size has more or less of, each by itself."""
 
-_QUIET = 0.3
-"""Share of the benches."""
-
-_OWN_LAW = 0.7
-"""Share of the others whose law is not the constant one."""
-
-_HOW_MANY = (0.12, 0.3, 0.28, 0.2, 0.1)
-"""Shares of benches with none, one, two ... departures besides the law."""
-
 _RATES = (25_600, 30_000, 32_000, 44_100, 48_000, 51_200)
-_ALL_RATES = (12_000, 16_000, 20_000, 22_050, *_RATES, 65_536, 96_000)
-_LENGTHS = (0.4, 0.5, 0.6, 0.8, 1.0)
-_SHORTEST, _LONGEST, _RARELY = 0.3, 5.0, 4.0
-"""Of records [s]; the larger the last, the rarer the long ones."""
-
-_LONGEST_OF_LAWS = {True: 1.6, False: 0.7}
-"""Where the law is not the constant one, whose motion costs ten times as much [s]: of benches with
-records of other lengths, and of the others."""
-
-_NOISE = (0.2, 6.0)
-_BITS = (12, 16)
-_LARGEST = 3.4
-"""Factor on a size."""
-
-_WRONG_SPEED, _WARMER = 0.04, 6.0
-"""Largest relative error of stated speeds, and of the temperature [K]."""
-
-_LISTED = (0.05, 0.6)
-"""Strengths of what a rig file lists."""
+"""Of recordings of a usual length [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -304,71 +278,60 @@ def draw_bench(rng: Rng) -> Bench:
     usual = Acquisition().noise
     bench = Bench(
         rate=float(rng.choice(_RATES)),
-        seconds=float(rng.choice(_LENGTHS)),
+        seconds=float(rng.choice((0.4, 0.5, 0.6, 0.8, 1.0))),
         noise={kind: level * float(rng.uniform(*NOISE_DRAWN)) for kind, level in usual.items()},
         stated=bool(rng.random() < 0.5),
     )
-    if rng.random() < _QUIET:
+    if rng.random() < 0.3:
         return bench
-    met: list[str] = []
-    if rng.random() < _OWN_LAW:
-        met.append("laws")
-    count = max(int(rng.choice(len(_HOW_MANY), p=_HOW_MANY)), 1 - len(met))
+    met = ["laws"] if rng.random() < 0.7 else []
+    count = max(int(rng.choice(5, p=(0.12, 0.3, 0.28, 0.2, 0.1))), 1 - len(met))
     often = np.array([share for share, _ in DEPARTURES.values()])
     met += rng.choice(list(DEPARTURES), count, replace=False, p=often / often.sum()).tolist()
     if "laws" in met:
-        bench = replace(bench, law=_one(OWN_LAWS, rng))
+        bench = replace(bench, law=picked(OWN_LAWS, rng))
     for name, (_, draw) in DEPARTURES.items():
         if name in met:
             bench = replace(bench, **draw(rng))
-    longest = _LONGEST_OF_LAWS["records" in met] if bench.law else _LONGEST
+    # The motion of a law that is not the constant one costs ten times as much.
+    longest = math.inf if not bench.law else 1.6 if "records" in met else 0.7
     return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
 
 
 def _sensors(rng: Rng) -> dict[str, Any]:
     return {
-        "noise": {k: x * log_uniform(*_NOISE, rng) for k, x in Acquisition().noise.items()},
-        "bits": int(rng.integers(_BITS[0], _BITS[1] + 1)) if rng.random() < 0.55 else 0,
+        "noise": {k: x * log_uniform(0.2, 6.0, rng) for k, x in Acquisition().noise.items()},
+        "bits": int(rng.integers(12, 17)) if rng.random() < 0.55 else 0,
         "ranges": log_uniform(0.5, 2.0, rng),
     }
 
 
 def _records(rng: Rng) -> dict[str, Any]:
-    long = math.log(_LONGEST / _SHORTEST) * float(rng.random()) ** _RARELY
-    return {"rate": float(rng.choice(_ALL_RATES)), "seconds": round(_SHORTEST * math.exp(long), 2)}
-
-
-def _sizes(rng: Rng) -> dict[str, Any]:
-    return {"sizes": {name: log_uniform(1.0 / _LARGEST, _LARGEST, rng) for name in SIZES}}
+    long = math.log(5.0 / 0.3) * float(rng.random()) ** 4.0  # long ones are rare
+    rates = (12_000, 16_000, 20_000, 22_050, *_RATES, 65_536, 96_000)
+    return {"rate": float(rng.choice(rates)), "seconds": round(0.3 * math.exp(long), 2)}
 
 
 def _listed(rng: Rng) -> dict[str, Any]:
     names = rng.choice(sorted(EFFECTS), int(rng.integers(1, 3)), replace=False).tolist()
-    drawn = (drawn_effect(name, log_uniform(*_LISTED, rng), rng) for name in names)
+    drawn = (drawn_effect(name, log_uniform(0.05, 0.6, rng), rng) for name in names)
     return {"listed": tuple(drawn)}
-
-
-def _wrong_conditions(rng: Rng) -> dict[str, Any]:
-    return {"wrong_speed": _WRONG_SPEED, "warmer": float(rng.uniform(-_WARMER, _WARMER))}
 
 
 DEPARTURES: Mapping[str, tuple[float, Callable[[Rng], dict[str, Any]]]] = {
     "sensors": (2.2, _sensors),
     "records": (1.2, _records),
-    "sizes": (1.2, _sizes),
+    "sizes": (1.2, lambda rng: {
+        "sizes": {name: log_uniform(1.0 / 3.4, 3.4, rng) for name in SIZES}}),
     "listed": (0.9, _listed),
     "single": (1.1, lambda _rng: {"repeats": False}),
-    "conditions": (1.1, _wrong_conditions),
+    "conditions": (1.1, lambda rng: {
+        "wrong_speed": 0.04, "warmer": float(rng.uniform(-6.0, 6.0))}),
     "responses": (1.1, lambda rng: {"responses": "poor" if rng.random() < 0.67 else "none"}),
     "starts": (1.2, lambda rng: {"start": str(rng.choice(list(STARTS)))}),
-}
+}  # fmt: skip
 """Ways besides the friction law in which a bench is not quiet: how often each is met, and what it
 changes."""
-
-
-def _one(shares: Mapping[str, float], rng: Rng) -> str:
-    share = np.array(list(shares.values()))
-    return str(rng.choice(list(shares), p=share / share.sum()))
 
 
 _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (1011.0, 27.0, 20.0)}
@@ -377,31 +340,8 @@ _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (
 _CREEPING = {0.178e-3: 3.0, 0.279e-3: 4.5, 0.381e-3: 8.0}
 """Speed up to which each fit sticks and slips [rad/s]; most recordings lie below it."""
 
-_ELSEWHERE = 12.0
-"""That of the fits of other materials."""
-
 _DAMPING = {2214.0: 0.105, 3745.0: 0.085, FIXED: 0.085}
 """Of each support [Nm s/rad]."""
-
-_DESIGN_SPREAD = 0.08
-"""Relative standard deviation of a rig's numbers from those of the thesis."""
-
-_STEEPER = (1.0, 2.2)
-"""By what the drop of torque is larger where the contact is elastic, which takes a part of it."""
-
-_STATED_SCATTER = 0.3
-"""Share of the rigs with a law of their own that state a scatter of the critical torque."""
-
-_FASTEST = 10.0
-_SLOWEST = 0.6
-
-_SIMULATED = {True: 6.5, False: 4.2}
-"""Seconds that the recordings of a case may last together, settling included, before conditions are
-made fewer: where the law is the constant one, and where it is not."""
-
-_TRIES, _LOOKED_AT, _A_WHILE, _LEAST_SWING = 4, 2, 0.2, 0.01
-"""Draws of a law until a rig vibrates, conditions at which that is seen, for how long [s], and the
-torque's standard deviation over its mean [-]: nobody brings many rigs that are silent."""
 
 
 @dataclass(frozen=True)
@@ -438,9 +378,9 @@ def draw_setting(rng: Rng) -> Setting:
     bench = draw_bench(rng)
     rig = _rig(bench, rng)
     conditions = _conditions(rig, bench, rng)
-    if bench.law and bench.law not in MATERIALS:
-        for _ in range(_TRIES):
-            if _vibrates(rig, conditions[:_LOOKED_AT]):
+    if bench.law and bench.law not in MATERIALS:  # nobody brings many rigs that are silent
+        for _ in range(4):
+            if _vibrates(rig, conditions[:2]):
                 break
             rig = replace(rig, friction=_law(draw_law(bench.law, rng), bench))
     largest = {
@@ -460,7 +400,8 @@ def _rig(bench: Bench, rng: Rng) -> Rig:
         if rng.random() < 0.4:
             plain = constant_version(plain)
     else:
-        steeper = float(rng.uniform(*_STEEPER)) if bench.law else 1.0
+        # A contact that is elastic takes a part of the drop of torque.
+        steeper = float(rng.uniform(1.0, 2.2)) if bench.law else 1.0
         fits = tuple(
             Fit(interference, stiffness, kinetic + steeper * (critical - kinetic), kinetic,
                 _DAMPING)
@@ -468,7 +409,7 @@ def _rig(bench: Bench, rng: Rng) -> Rig:
         )  # fmt: skip
         law = draw_law(bench.law, rng) if bench.law else LawSpec("coulomb", {})
         plain = replace(thesis, fits=fits, friction=law, elastomer_damping_share=0.5, effects=())
-        if bench.law and rng.random() < _STATED_SCATTER:
+        if bench.law and rng.random() < 0.3:
             scatter = float(rng.uniform(0.1, 0.4))
             plain = replace(plain, effects=(
                 LawSpec("critical_torque_scatter", {"form": "uniform", "scatter": scatter}),
@@ -494,11 +435,11 @@ def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
     for c in conditions:
         motion = simulate_motion(
             rig, ConstantSpeed(c.speed), interference=c.interference,
-            support_stiffness=c.support_stiffness, seconds=_A_WHILE, rate=REGIME_RATE, effects=(),
+            support_stiffness=c.support_stiffness, seconds=0.2, rate=REGIME_RATE, effects=(),
             tolerance=DIAGNOSIS.tolerance,
         )  # fmt: skip
         late = motion.torque[motion.torque.size // 2 :]
-        if late.std() > _LEAST_SWING * abs(late.mean()):
+        if late.std() > 0.01 * abs(late.mean()):
             return True
     return False
 
@@ -521,7 +462,7 @@ def _sized(fit: Fit, bench: Bench, rng: Rng) -> Fit:
 
 
 def _about(value: float, rng: Rng) -> float:
-    return value * math.exp(_DESIGN_SPREAD * float(rng.standard_normal()))
+    return value * math.exp(0.08 * float(rng.standard_normal()))
 
 
 def _support(support: float, bench: Bench) -> float:
@@ -531,7 +472,8 @@ def _support(support: float, bench: Bench) -> float:
 
 def _conditions(rig: Rig, bench: Bench, rng: Rng) -> tuple[KnownCondition, ...]:
     again = 2 if bench.repeats else 0
-    most = int(_SIMULATED[not bench.law] / (bench.seconds + DIAGNOSIS.settling)) - again
+    together = 4.2 if bench.law else 6.5  # that the recordings of a case may last [s]
+    most = int(together / (bench.seconds + DIAGNOSIS.settling)) - again
     different = min(int(rng.integers(2, 8)), max(most, 2))
     known = sorted(rig.fits[0].damping)
     supports = rng.choice(known, rng.integers(1, 3), replace=False).tolist()
@@ -541,9 +483,9 @@ def _conditions(rig: Rig, bench: Bench, rng: Rng) -> tuple[KnownCondition, ...]:
     drawn: list[KnownCondition] = []
     while len(drawn) < different:
         fit = fits[int(rng.integers(len(fits)))]
-        creeping = _CREEPING.get(fit, _ELSEWHERE)
-        fastest = creeping if rng.random() < 0.9 else max(_FASTEST, creeping)
-        speed = bench.pace * math.exp(rng.uniform(math.log(_SLOWEST), math.log(fastest)))
+        creeping = _CREEPING.get(fit, 12.0)
+        fastest = creeping if rng.random() < 0.9 else max(10.0, creeping)
+        speed = bench.pace * math.exp(rng.uniform(math.log(0.6), math.log(fastest)))
         condition = KnownCondition(
             speed=float(f"{speed:.2g}"),
             interference=fit,

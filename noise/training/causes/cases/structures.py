@@ -20,17 +20,7 @@ from sim.bushing import LumpedBushing
 _LINES = np.arange(10.0, 10_001.0, 2.5)
 """Of the hammer test [Hz]."""
 
-_IMPACTS = 32
-"""Of a good hammer test."""
-
-_FEW_IMPACTS = (3, 9)
-_POOR_COHERENCE = (0.85, 0.97)
-_WRONG_GAIN = 0.06
-"""Of a poor one: impacts, coherence, and relative error of each channel's gain at most [-]."""
-
 _SOUND_SPEED = 343.0
-_LONGEST = 0.25
-"""Impulse responses are followed so long [s]."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +121,7 @@ class Structure:
 
     def response(self, rate: float) -> ImpulseResponses:
         """Impulse responses at a sampling rate [Hz]."""
-        n = int(_LONGEST * rate)
+        n = int(0.25 * rate)
         frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
         x = np.clip((frequency - 0.4 * rate) / (0.05 * rate), 0.0, 1.0)
         taper = 0.5 + 0.5 * np.cos(np.pi * x)
@@ -204,11 +194,11 @@ def _as_measured(
     size = np.abs(response)
     floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
     noise = (floor / size) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)
-    impacts, gain = _IMPACTS, 1.0
-    if poor:
-        noise += 1.0 / float(rng.uniform(*_POOR_COHERENCE)) - 1.0
-        impacts = int(rng.integers(*_FEW_IMPACTS))
-        gain += float(rng.uniform(-_WRONG_GAIN, _WRONG_GAIN))
+    impacts, gain = 32, 1.0
+    if poor:  # in coherence, number of impacts, and the channel's gain
+        noise += 1.0 / float(rng.uniform(0.85, 0.97)) - 1.0
+        impacts = int(rng.integers(3, 9))
+        gain += float(rng.uniform(-0.06, 0.06))
     coherence = 1.0 / (1.0 + np.minimum(noise, 9.0))
     spread = size * np.sqrt((1.0 - coherence) / (2.0 * impacts * coherence))
     error = rng.standard_normal((2, _LINES.size)) * spread / math.sqrt(2.0)
