@@ -17,7 +17,7 @@ from noise.app.requests import number
 from noise.base.labels import LABELS
 from noise.batch.work import Job
 from noise.labels.corrections import common_time, place, track
-from noise.labels.human_rows import human_rows
+from noise.labels.rows import human_rows
 from noise.labels.summary import ASSUMED
 from noise.labels.table import COLUMNS, CONDITIONS, HUMAN
 

@@ -9,19 +9,17 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from models.drawing import axes_or_new
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError
 from models.foreign_file import refusing
-from noise.base.labels import DARK_LABELS, LABEL_COLOURS, LABELS
+from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.base.tables import check_table_path, read_table, write_table
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from pandas import DataFrame
 
 
@@ -103,31 +101,6 @@ class LabelTable(list[dict[str, object]]):
         check_table_path(path)
         write_table(path, (*COLUMNS, *own_columns(self)), self)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the labels over time, one row per file.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Raises
-        ------
-        ParameterError
-            Nothing is labelled.
-        """
-        tracks: dict[str, list[tuple[float, float, str]]] = {}
-        for row in self:
-            start, end, label = row["start_s"], row["end_s"], row["label"]
-            if isinstance(start, float) and isinstance(end, float) and isinstance(label, str):
-                track = "" if row["channel"] == "all" else f", track {row['channel']}"
-                tracks.setdefault(f"{row['file']}{track}", []).append((start, end, label))
-        return draw_tracks(tracks, ax)
-
     def to_pandas(self) -> DataFrame:
         """Return the table as a pandas data frame, by `COLUMNS`.
 
@@ -150,83 +123,6 @@ class LabelTable(list[dict[str, object]]):
         files = counted(len({row.get("file") for row in self}), "file")
         numbers = ", ".join(f"{number} {label}" for label, number in counts.most_common())
         return f"LabelTable({files}; segments: {numbers or 'none'})"
-
-
-MOST_TRACKS = 40
-"""Maximum number of rows in a picture."""
-
-_BAR = 0.7
-_NAMED = 0.08
-"""Minimum share of the axis of a bar with its label in it."""
-
-
-def draw_tracks(
-    tracks: Mapping[str, Sequence[tuple[float, float, str]]], ax: Axes | None = None
-) -> Axes:
-    """Draw labels over time.
-
-    Parameters
-    ----------
-    tracks : mapping of str to sequence of (float, float, str)
-        Start [s], end [s] and label of each stretch, by the name of its row; the first row is on
-        top, and at most `MOST_TRACKS` are drawn.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default a new figure.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        Nothing is labelled.
-
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> axes = draw_tracks({"run07": [(0.0, 1.0, "creak")]}, Figure().subplots())
-    >>> axes.get_xlabel(), [text.get_text() for text in axes.get_legend().get_texts()]
-    ('Time [s]', ['creak'])
-    """
-    from matplotlib.patches import Patch
-
-    stretches = [stretch for of_one in tracks.values() for stretch in of_one]
-    if not stretches:
-        raise ParameterError("nothing is labelled, so there is nothing to draw")
-    longest = max(end for _, end, _ in stretches)
-    shown = dict(list(tracks.items())[:MOST_TRACKS])
-    with axes_or_new(ax) as axes:
-        for row, of_one in enumerate(shown.values()):
-            for start, end, label in of_one:
-                axes.broken_barh(
-                    [(start, end - start)], (row - _BAR / 2, _BAR),
-                    facecolor=LABEL_COLOURS[label], edgecolor="#444444", linewidth=0.6,
-                )  # fmt: skip
-                if end - start >= _NAMED * longest:
-                    axes.text(
-                        (start + end) / 2, row, label, ha="center", va="center", fontsize=9.0,
-                        color="white" if label in DARK_LABELS else "#222222",
-                    )  # fmt: skip
-        axes.set_yticks(range(len(shown)), list(shown))
-        axes.set_ylim(len(shown) - 0.5, -0.5)
-        axes.set_xlim(0.0, longest)
-        axes.set_xlabel("Time [s]")
-        axes.grid(visible=False)
-        if len(tracks) > MOST_TRACKS:
-            axes.set_title(f"{MOST_TRACKS} of {len(tracks)}", loc="left")
-        present = {label for _, _, label in stretches}
-        axes.legend(
-            handles=[
-                Patch(facecolor=colour, edgecolor="#444444", label=label)
-                for label, colour in LABEL_COLOURS.items()
-                if label in present
-            ],
-            loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),
-            ncols=len(present),
-        )
-    return axes
 
 
 def own_columns(rows: Iterable[Mapping[str, object]]) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import os
 import struct
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -61,94 +60,35 @@ def write_recording(path: str | os.PathLike[str], recording: Recording) -> Path:
     ...     sorted(file.name for file in Path(folder).glob("runs/*"))
     ['none.json', 'none.wav']
     """
-    samples, n = recording.samples, recording.samples.shape[1]
-    blocks = (samples[:, at : at + _BLOCK] for at in range(0, n, _BLOCK))
-    return write_blocks(path, blocks, n, recording)
-
-
-def write_blocks(
-    path: str | os.PathLike[str],
-    blocks: Iterable[NDArray[np.float64]],
-    n_samples: int,
-    about: Recording,
-) -> Path:
-    """Write blocks as one 32-bit float WAV file with its sidecar, atomically.
-
-    Parameters
-    ----------
-    path : path-like
-        See `write_recording`.
-    blocks : iterable of ndarray, shape (n_channels, n)
-        [units of the channels]
-    n_samples : int
-        Total number of samples.
-    about : Recording
-        Recording without samples: rate (a whole number of hertz), channels, condition, notes.
-
-    Returns
-    -------
-    Path
-        The WAV file.
-
-    Raises
-    ------
-    ParameterError
-        The recording cannot be written or could not be read back, or the blocks do not hold
-        `n_samples` samples.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from models.recording import Channel, Recording
-    >>> from noise.recordings import read_recording
-    >>> halves = (np.full((1, 400), value) for value in (20.0, 30.0))
-    >>> about = Recording(np.zeros((1, 0)), 30e3, (Channel("torque"),))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = write_blocks(Path(folder) / "run07", halves, 800, about)
-    ...     float(read_recording(path)["torque"].mean())
-    25.0
-    """
-    target, rate = _wav_path(Path(path)), about.rate
-    if n_samples < MIN_SAMPLES:
-        raise ParameterError(f"{target}: {n_samples} samples, expected at least {MIN_SAMPLES}")
+    target, rate = _wav_path(Path(path)), recording.rate
+    if recording.n_samples < MIN_SAMPLES:
+        raise ParameterError(
+            f"{target}: {recording.n_samples} samples, expected at least {MIN_SAMPLES}"
+        )
     if not (1 <= rate < 1 << 31 and float(rate).is_integer()):
         raise ParameterError(
             f"{target}: the sampling rate is {rate!r} Hz, but WAV holds whole hertz only"
         )
-    sidecar_text(about)  # refuses values that could not be read back
+    text = sidecar_text(recording)  # refuses values that could not be read back
     with naming(f"{target}: "):
-        header = _header(n_samples, int(rate), 32, n_channels=len(about.channels))
+        header = _header(recording.n_samples, int(rate), 32, n_channels=len(recording.channels))
     with atomic(target.with_suffix(".json")) as sidecar, atomic(target) as wav:
         with wav.open("wb") as file:
             file.write(header)
-            written = 0
-            for block in blocks:
-                file.write(_frames(target, block, about).tobytes())
-                written += block.shape[1]
-        if written != n_samples:
-            raise ParameterError(f"{target}: {written} samples arrived, expected {n_samples}")
-        sidecar.write_text(sidecar_text(about), encoding="utf-8")
+            for at in range(0, recording.n_samples, _BLOCK):
+                with np.errstate(over="ignore"):
+                    frames = recording.samples[:, at : at + _BLOCK].T.astype("<f4")
+                finite = np.isfinite(frames).all(axis=0)
+                if not finite.all():
+                    name = recording.channel_names[int(np.argmin(finite))]
+                    raise ParameterError(
+                        f"{target}: channel {name!r} holds samples that are not finite in 32 bits"
+                    )
+                file.write(frames.tobytes())
+        sidecar.write_text(text, encoding="utf-8")
         # A call that is killed here leaves samples without a sidecar, none with a wrong one.
         target.with_suffix(".json").unlink(missing_ok=True)
     return target
-
-
-def _frames(target: Path, block: NDArray[np.float64], about: Recording) -> NDArray[np.float32]:
-    """Return a block as interleaved 32-bit samples, shape (n, n_channels)."""
-    channels = about.channels
-    if block.ndim != 2 or block.shape[0] != len(channels):
-        raise ParameterError(
-            f"{target}: a block has shape {block.shape}, expected ({len(channels)}, n_samples)"
-        )
-    with np.errstate(over="ignore"):
-        frames = block.T.astype("<f4")
-    finite = np.isfinite(frames).all(axis=0)
-    if not finite.all():
-        name = channels[int(np.argmin(finite))].name
-        raise ParameterError(
-            f"{target}: channel {name!r} holds samples that are not finite in 32 bits"
-        )
-    return frames
 
 
 def _wav_path(path: Path) -> Path:

@@ -44,7 +44,7 @@ from models.recording import Channel, Recording
 from models.rig import LawSpec, Rig
 from models.rig_file import load_material_rig
 from noise.base.arrays import Array, Rng
-from noise.inference.inputs import (
+from noise.inference.model import (
     INTERFERENCE_RANGE,
     KINDS,
     LONGEST,
@@ -54,11 +54,11 @@ from noise.inference.inputs import (
     SHORTEST,
     SPEED_RANGE,
     SUPPORT_RANGE,
+    Inference,
     of_channels,
     scaled,
     segment_features,
 )
-from noise.inference.model import Inference
 from noise.noise_definition import label_by_physics
 from noise.training.classifier.bushings import SHAPES, scaled as scaled_fit
 from noise.training.classifier.recorder import resampled, through_a_microphone, with_sensor_noise
@@ -120,7 +120,7 @@ class RunSample:
     label : str
         Noise by physics (`noise.noise_definition`).
     scaled : ndarray, shape (3,)
-        Condition, as from `noise.inference.inputs.scaled` [-, mm, -].
+        Condition, as from `noise.inference.model.scaled` [-, mm, -].
     features : tuple of (mapping of str to float)
         In the field, and on the rig [unit of each feature].
     """
@@ -243,7 +243,7 @@ class Runs:
     tables : ndarray, shape (2, n_runs, n_names)
         Features in the field, and on the rig [unit of each feature].
     scaled : ndarray, shape (n_runs, 3)
-        Conditions as from `noise.inference.inputs.scaled` [-, mm, -].
+        Conditions as from `noise.inference.model.scaled` [-, mm, -].
     """
 
     tables: Array

@@ -67,12 +67,12 @@ def sweep():
     return noise.sweep(rig, [1.0, 5.0], support_stiffness=[[2214.0], [noise.FIXED]], seconds=0.01)
 
 
-DRAWN = (recording, run, segments, label_table, one_effect, response, sweep)
+DRAWN = (recording, run, one_effect, response, sweep)
 ROWS = {segments: 30, label_table: 30, one_effect: None, response: 401, modes: 2, sweep: 4,
         identification: 1}  # fmt: skip
 
 
-@pytest.mark.parametrize("made", [*DRAWN, modes, identification, noise.load_classifier])
+@pytest.mark.parametrize("made", [*DRAWN, *ROWS, noise.load_classifier])
 def test_a_result_prints_short(made):
     printed = repr(made())
     assert len(printed) < LONGEST

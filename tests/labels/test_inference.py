@@ -17,7 +17,7 @@ from models.rig_file import load_material_rig
 from noise.base.tables import write_table
 from noise.classifier import LABELS
 from noise.inference import Interval, infer_stretch, load_inference
-from noise.inference.inputs import LONGEST, QUANTITIES, scaled, unscaled
+from noise.inference.model import LONGEST, QUANTITIES, scaled, unscaled
 from noise.labels.conditions import conditions_map
 from noise.labels.rows import label_rows
 from noise.labels.segments import Segment

@@ -18,9 +18,14 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from noise.classifier import LABELS, load_classifier
 from noise.cli import main
-from noise.labels.classified import FREQUENCY_NAMES, segment_frequency
 from noise.labels.rows import label_rows
-from noise.labels.segments import Segment, file_label, label_recording
+from noise.labels.segments import (
+    FREQUENCY_NAMES,
+    Segment,
+    file_label,
+    label_recording,
+    segment_frequency,
+)
 from noise.labels.table import COLUMNS
 from noise.recordings import write_recording
 from sim.run import simulate
