@@ -1,4 +1,4 @@
-"""Commands killed anywhere on their way and called again: as if nothing had happened."""
+"""Batches that are killed or interrupted and called again go on where they were."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ import pytest
 import noise
 from noise.batch.journal import journal_path
 from noise.cli import main
-from tests.helpers import dying_command
 from tests.helpers.batch_work import make_recordings
 from tests.helpers.kept import results_in
 
@@ -24,23 +23,6 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no SIGKILL")
 
 ROOT = Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
-SHARES = (0.0, 0.1, 0.5, 0.9)
-
-BENCH = [
-    ["simulate", "--speed", str(n), "--seconds", "0.5", "--seed", str(n), "--out", f"bench/{n}"]
-    for n in (1, 2, 3)
-]
-MAP = ("--speed", "1,5", "--interference", "0.279", "--support-stiffness", "2214")
-CALLS = {
-    "render": ["render", "bench", "--out", "set"],
-    "render, simulated": ["render", "--interference 0.279", "--interference 0.381", "--speed", "5",
-                          "--seconds", "0.3", "--out", "set"],
-    "screen": ["screen", "PDMS", *MAP, "--simulations", "4", "--no-tolerances", "--sounds", "1",
-               "--out", "screen"],
-    "diagnose": ["diagnose", "bench", "--rig", "rig.toml", "--quick", "--out", "diagnosis"],
-    "train": ["train", "--samples", "20", "--out", "mine.npz"],
-}  # fmt: skip
-
 _TOOK = re.compile(rb'"seconds": [\d.]+|Screened in [\d.]+ s|Time taken</dt><dd>[\d.]+ s')
 """How long it took is told, and differs."""
 
@@ -52,49 +34,6 @@ def contents(folder):
         for path in folder.rglob("*")
         if path.is_file() and ".journal" not in path.name and ".part" not in path.name
     }
-
-
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("of") / "all"
-    folder.mkdir()
-    for call in BENCH:
-        assert subprocess.run([sys.executable, "-m", "noise", *call], cwd=folder, env=ENVIRONMENT,
-                              capture_output=True, check=False).returncode == 0  # fmt: skip
-    (folder / "rig.toml").write_text('base = "fluorocarbon"\n')
-    return folder
-
-
-def run(folder, call, at=-1):
-    """Run a command that dies at a moment; return its exit code and the number of moments."""
-    told = folder.with_suffix(".told")
-    script = Path(dying_command.__file__)
-    done = subprocess.run(
-        [sys.executable, script, str(at), told, *call], cwd=folder, env=ENVIRONMENT,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert "Traceback" not in done.stderr, done.stderr
-    return done.returncode, int(told.read_text()) if at < 0 else at
-
-
-@pytest.mark.parametrize("command", CALLS)
-@pytest.mark.slow
-def test_a_command_killed_anywhere_comes_out_as_if_it_had_not_been(command, bench, tmp_path):
-    undisturbed = Path(shutil.copytree(bench, tmp_path / "undisturbed"))
-    code, n = run(undisturbed, CALLS[command])
-    assert code == 0
-    assert n > 3
-    for share in SHARES:
-        folder = Path(shutil.copytree(bench, tmp_path / f"at{share}"))
-        # Twice, since what the first leaves is in the way of the second.
-        for moment in (int(share * n), min(int(share * n) + 1, n - 1)):
-            ended, _ = run(folder, CALLS[command], moment)
-            assert ended in (-signal.SIGKILL, 0)
-        assert run(folder, CALLS[command])[0] == 0
-        assert contents(folder) == contents(undisturbed)
-
-
-# With a journal
 
 
 def start(call, folder, **how):

@@ -1,10 +1,7 @@
 """What results are in a notebook: a short print, a data frame of pandas, a picture on axes."""
 
 import io
-import os
-import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,29 +130,3 @@ def test_a_recording_draws_its_sound_pressure_unless_another_channel_is_named():
     assert uncalibrated.get_ylabel() == "Sound pressure [full scale]"
     with pytest.raises(ParameterError, match="no channel 'force'"):
         recording().plot("force", Figure().subplots())
-
-
-def test_pyplot_is_loaded_where_there_are_no_axes_to_draw_on_and_settings_stay():
-    code = (
-        "import sys, numpy as np, noise\n"
-        "tone = noise.Recording(np.zeros((1, 480)), 48e3, (noise.Channel('pressure'),))\n"
-        "repr(tone)\n"
-        "import pathlib\n"
-        "from noise.pictures.figure import check_picture_path\n"
-        "check_picture_path(pathlib.Path('a.png'))\n"
-        "assert 'matplotlib' not in sys.modules\n"
-        "import noise.pictures.maps\n"
-        "assert 'matplotlib.pyplot' not in sys.modules\n"
-        "import matplotlib as mpl\n"
-        "before = dict(mpl.rcParams)\n"
-        "axes = tone.plot()\n"
-        "import matplotlib.pyplot as plt\n"
-        "assert plt.get_fignums() == [axes.figure.number]\n"
-        "assert {k: v for k, v in mpl.rcParams.items() if k != 'backend'} == "
-        "{k: v for k, v in before.items() if k != 'backend'}\n"
-    )
-    environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(Path(__file__).parents[2])}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr

@@ -1,7 +1,6 @@
 """The README, as somebody follows it who pastes one block after the other into an empty folder."""
 
 import fnmatch
-import html
 import re
 
 import numpy as np
@@ -144,15 +143,6 @@ def test_the_folder_holds_what_the_readme_says(demo):
         assert found == {f"{name}.{ending}" for name in NAMES for ending in ("wav", "json")}
 
 
-def test_the_page_tells_the_levels_of_the_label_table(demo):
-    text = html.unescape((demo / "report.html").read_text(encoding="utf-8"))
-    rows = csv_rows(demo / "labels.csv")
-    most = re.findall(r">([^<]*) dB\(A\) Fast at most<", text)
-    assert most == [f"{float(row['l_afmax_dba']):.1f}" for row in rows]
-    assert all(f"{float(row['level_dba']):.1f} dB(A)" in text for row in rows)
-    assert "dB re 20 µPa" in text
-
-
 def test_every_recording_carries_its_label_linked_to_its_condition(demo):
     rows = csv_rows(demo / "labels.csv")
     assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
@@ -163,22 +153,6 @@ def test_every_recording_carries_its_label_linked_to_its_condition(demo):
         assert float(row["support_stiffness_Nm_rad"]) == case.support_stiffness
         assert row["material"] == case.material
         assert row["calibrated"] == "true"
-
-
-def test_features_have_one_row_a_recording(demo):
-    rows = csv_rows(demo / "features.csv")
-    assert [row["file"] for row in rows] == [f"{name}.wav" for name in NAMES]
-    assert all(row["pressure_level"] for row in rows)
-
-
-def test_sounds_never_clip_and_silence_stays_quiet(demo):
-    peaks = {name: abs(read_recording(demo / "audio" / f"{name}.wav").samples) for name in NAMES}
-    scales = {
-        name: read_recording(demo / "audio" / f"{name}.wav").channels[0].full_scale
-        for name in NAMES
-    }
-    assert all(peaks[name].max() < scales[name] for name in NAMES)
-    assert peaks["none"].max() < 0.2 * scales["none"]
 
 
 def test_its_hits_give_the_response_of_the_modelled_structure(demo):

@@ -229,18 +229,6 @@ def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path,
         diagnose(data, rig, effects=tmp_path / "nowhere.py")
 
 
-@pytest.mark.slow
-def test_an_effect_of_the_users_own_that_is_not_the_cause_is_listed_behind(
-    alarmed, tmp_path, capsys
-):
-    mine = tmp_path / "rectifier.py"
-    mine.write_text(RECTIFIER)
-    data, rig = write_case(tmp_path, _recordings(WEAK, conditions=CONDITIONS[:3]))
-    told = _told(capsys, data, "--rig", rig, "--effects", mine)
-    assert "rectifier" not in told["verdict"]
-    assert "rectifier" in [effect["name"] for effect in told["effects"]]
-
-
 def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_say_so(
     plain, tmp_path, capsys
 ):
@@ -254,20 +242,6 @@ def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_sa
     assert sum(chances.values()) == pytest.approx(1.0, abs=1e-3)
     assert told["effects"][0]["probability"] == chances["rectifier"]
     assert any("the probabilities are of rectifier and of no gap" in n for n in told["notes"])
-
-
-def test_an_own_effect_that_the_rig_file_lists_is_no_finding(tmp_path, capsys):
-    mine = tmp_path / "rectifier.py"
-    mine.write_text(RECTIFIER)
-    recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
-    listed = RIG_FILE.replace("effects = []", 'effects = ["rectifier:share=0.8"]')
-    chances = []
-    for name, text in (("lacks", RIG_FILE), ("lists", listed)):
-        data, rig = write_case(tmp_path / name, recordings, text)
-        told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
-        assert "rectifier" not in told["verdict"]
-        chances.append(told["probabilities"]["none"])
-    assert chances[1] > chances[0]
 
 
 def test_numbers_that_are_none_become_null():
