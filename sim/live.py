@@ -28,7 +28,7 @@ from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import first_mode_damping, impulse_responses
 from sim.acquisition import Acquisition, Decimation, digitise
 from sim.chain import apply_chain_effects
-from sim.motion import Motion, MotionSolver, lookahead_samples, unusual_values_first
+from sim.motion import Motion, MotionSolver, lookahead_samples
 from sim.plan import SIMULATION, Plan, Setting, plan_run
 from sim.run import pulse_force
 from sim.shaft import ShaftMotion
@@ -176,8 +176,7 @@ class LiveSimulation:
 
     def _advance(self, n: int) -> Motion:
         drive = self._drive(self._setting.shaft, n + lookahead_samples(self._rate), self._time)
-        with unusual_values_first(self._plan.rig):
-            motion = self._solver.advance(drive, n)
+        motion = self._solver.advance(drive, n)
         self._time += n
         return motion
 
@@ -191,8 +190,7 @@ class LiveSimulation:
         drive = old + np.concatenate([_fade_in(n), np.ones(beyond)]) * (new - old)
         solver = self._solver_of(plan, float(drive[0]))
         solver.continue_from(self._solver, float(drive[0]))
-        with unusual_values_first(plan.rig):
-            motion = solver.advance(drive, n)
+        motion = solver.advance(drive, n)
         if replace(setting, shaft=before.shaft) != before:  # more than the drive changes
             motion = _cross_faded(self._solver.advance(drive, n), motion)
         self._setting, self._plan, self._solver = setting, plan, solver
@@ -203,11 +201,10 @@ class LiveSimulation:
         return shaft.speed(np.arange(first, first + n, dtype=np.float64) * (1.0 / self._rate))
 
     def _solver_of(self, plan: Plan, start_speed: float) -> MotionSolver:
-        with unusual_values_first(plan.rig):
-            return MotionSolver(
-                plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
-                deepcopy(self._effect_rng), start_speed=start_speed, tolerance=None,
-            )  # fmt: skip
+        return MotionSolver(
+            plan.rig, plan.interference, plan.support_stiffness, plan.rate, plan.effects,
+            deepcopy(self._effect_rng), start_speed=start_speed, tolerance=None,
+        )  # fmt: skip
 
 
 def live_plan(setting: Setting, rate: float) -> Plan:

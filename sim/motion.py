@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import Rig
-from models.schema import remarks
 from models.show import short_repr
 from sim.bushing import lumped_bushing
 from sim.effects import EFFECTS
@@ -150,12 +148,11 @@ def simulate_motion(
     effects = activated(rig.effects, EFFECTS) if effects is None else effects
     for active in effects:
         drive = active.apply_drive(drive, rate, rng)
-    with unusual_values_first(rig):
-        solver = MotionSolver(
-            rig, interference, support_stiffness, rate, effects, rng,
-            start_speed=float(drive[0]), tolerance=tolerance,
-        )  # fmt: skip
-        return solver.advance(drive, n)
+    solver = MotionSolver(
+        rig, interference, support_stiffness, rate, effects, rng,
+        start_speed=float(drive[0]), tolerance=tolerance,
+    )  # fmt: skip
+    return solver.advance(drive, n)
 
 
 def lookahead_samples(rate: float) -> int:
@@ -288,24 +285,3 @@ def contact_hooks(effects: Sequence[ActiveEffect], rng: np.random.Generator) -> 
 def _friction(law: str, effects: Sequence[ActiveEffect]) -> str:
     names = [active.effect.name for active in effects if active.effect.contact is not None]
     return f"friction law {law!r}" + (f" with {', '.join(names)}" if names else "")
-
-
-@contextmanager
-def unusual_values_first(rig: Rig) -> Iterator[None]:
-    """Prefix errors with the rig's values outside the usual range, their most likely cause.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> with unusual_values_first(load_material_rig("PDMS").changed(critical_torque="x1000")):
-    ...     raise ParameterError("no step is short enough")
-    Traceback (most recent call last):
-    models.errors.ParameterError: critical_torque_Nm = 3000 is outside the usual ...
-    """
-    try:
-        yield
-    except ParameterError as error:
-        unusual = "; ".join(remarks(rig))
-        if not unusual:
-            raise
-        raise ParameterError(f"{unusual}; no motion can be computed: {error}") from None

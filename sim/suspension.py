@@ -48,7 +48,7 @@ from sim.bushing import lumped_bushing
 from sim.contact import CRITICAL, KINETIC
 from sim.effects.effect import Effect
 from sim.friction import friction_law
-from sim.motion import Motion, contact_hooks, unusual_values_first
+from sim.motion import Motion, contact_hooks
 from sim.parameters import resolve
 from sim.plan import Plan, Setting, plan_run
 from sim.run import record_motions
@@ -234,8 +234,7 @@ def run_suspension(
         speed = active.apply_drive(speed, plan.rate, effect_rng)
     chain, preload = torsion_chain(suspension), suspension.preload(interference)
     _refuse_twist(suspension, chain, speed, plan.rate)
-    with unusual_values_first(plan.rig):
-        motion = solve_chain(chain, plan, speed, preload, effect_rng)
+    motion = solve_chain(chain, plan, speed, preload, effect_rng)
     plate, (across, _) = plan.rig.plate, plan.rig.plate.clamp_position
     rigs = [
         replace(plan.rig, plate=replace(plate, clamp_position=(across, along)))

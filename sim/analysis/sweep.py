@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +10,13 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import ArrayLike, NDArray
 
-from models.condition import KnownCondition
+from models.condition import CONDITION, KnownCondition
 from models.drawing import CURVES, axes_or_new
 from models.errors import ParameterError
 from models.rig import Rig
 from models.show import data_frame, short_repr
 from sim.analysis.regime import motion_slips
-from sim.motion import Motion, simulate_motion
+from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 
 if TYPE_CHECKING:
@@ -48,38 +48,29 @@ class Sweep:
 
     Parameters
     ----------
-    conditions : ndarray of KnownCondition, shape (...)
-        Operating conditions, as of `KnownCondition`.
-    features : dict of str to ndarray, shape (...)
+    conditions : tuple of KnownCondition
+    features : dict of str to ndarray, shape (n_conditions,)
         By the names of `FEATURES`, in their units.
-
-    Examples
-    --------
-    >>> rates = np.array([66.0, 199.0])
-    >>> at = np.array([KnownCondition(v, 2.79e-4, 2214.0) for v in (1.0, 2.5)])
-    >>> Sweep(at, {"slip_frequency": rates})["slip_frequency"]
-    array([ 66., 199.])
     """
 
-    conditions: NDArray[np.object_]
-    features: Mapping[str, NDArray[np.float64]]
-
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
-        return self.features[name]
+    conditions: tuple[KnownCondition, ...]
+    features: dict[str, NDArray[np.float64]]
 
     def to_pandas(self) -> DataFrame:
         """Return a pandas data frame with one row per run: its condition and features."""
-        rows: list[dict[str, Any]] = []
-        for index, at in enumerate(self.conditions.ravel()):
-            support = at.support_stiffness
-            rows.append({
+        rows: list[dict[str, Any]] = [
+            {
                 "material": at.material,
                 "speed_rad_s": at.speed,
                 "interference_mm": round(1e3 * at.interference, 6),
-                "support_stiffness_Nm_rad": "fixed" if np.isinf(support) else support,
-                **{name: float(values.ravel()[index]) for name, values in self.features.items()},
-            })  # fmt: skip
-        return data_frame([*rows[0]] if rows else [*self.features], rows)
+                "support_stiffness_Nm_rad": CONDITION["support_stiffness"].write(
+                    at.support_stiffness
+                ),
+                **{name: float(values[i]) for name, values in self.features.items()},
+            }
+            for i, at in enumerate(self.conditions)
+        ]
+        return data_frame([*rows[0]], rows)
 
     def plot(self, feature: str = "slip_frequency", ax: Axes | None = None) -> Axes:
         """Plot a feature over the speed, with one curve for each of the other conditions.
@@ -94,19 +85,10 @@ class Sweep:
         Returns
         -------
         matplotlib.axes.Axes
-
-        Raises
-        ------
-        ParameterError
-            There is no such feature.
         """
-        if feature not in self.features:
-            raise ParameterError(
-                f"feature {feature!r} is not known; use one of {', '.join(FEATURES)}"
-            )
         curves: dict[str, list[tuple[float, float]]] = {}
-        for at, value in zip(self.conditions.ravel(), self[feature].ravel(), strict=True):
-            curves.setdefault(", ".join(at.words[:-1]), []).append((at.speed, float(value)))
+        for at, value in zip(self.conditions, self.features[feature].tolist(), strict=True):
+            curves.setdefault(", ".join(at.words[:-1]), []).append((at.speed, value))
         with axes_or_new(ax) as axes:
             for number, (name, points) in enumerate(curves.items()):
                 colour = CURVES[number % len(CURVES)]
@@ -124,17 +106,16 @@ def sweep(
     support_stiffness: ArrayLike = 2214.0,
     *,
     seconds: float = 1.0,
-    settling: float = 0.0,
 ) -> Sweep:
-    """Simulate the motion of one or several rigs at many constant speeds.
+    """Simulate the motion of one or several rigs from rest at many constant speeds.
 
     Parameters
     ----------
     rig : Rig or sequence of Rig
     speed, interference, support_stiffness : array_like
         [rad/s], [m] and [Nm/rad]. They and `rig` are broadcast against each other.
-    seconds, settling : float
-        Duration that is evaluated, and duration before it, from rest [s].
+    seconds : float
+        Length of each run [s].
 
     Returns
     -------
@@ -150,9 +131,8 @@ def sweep(
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
     >>> result = sweep(rig, [1.0, 12.0], support_stiffness=[[2214.0], [3745.0]], seconds=0.2)
-    >>> result["slip_frequency"].round()
-    array([[153.,  nan],
-           [150.,  nan]])
+    >>> result.features["slip_frequency"].round()
+    array([153.,  nan, 150.,  nan])
     """
     numbers = [np.asarray(x, np.float64) for x in (speed, interference, support_stiffness)]
     rigs = np.array(rig if isinstance(rig, Rig) else [*rig], dtype=object)
@@ -162,36 +142,24 @@ def sweep(
         raise ParameterError(f"sweep: the conditions do not fit together: {error}") from None
     if not np.isfinite(numbers[0]).all():
         raise ParameterError("sweep: speeds must be finite numbers [rad/s]")
-    runs = [
-        (one, KnownCondition(speed, fit, support, one.material))
-        for one, speed, fit, support in zip(*(x.ravel().tolist() for x in columns), strict=True)
-    ]
-
-    def features(
-        one: Rig, at: KnownCondition, stream: np.random.SeedSequence
-    ) -> NDArray[np.float64]:
-        motion = simulate_motion(
-            one, ConstantSpeed(at.speed), interference=at.interference,
-            support_stiffness=at.support_stiffness, seconds=settling + seconds, rate=_RATE,
-            rng=np.random.default_rng(stream),
-        )  # fmt: skip
-        return motion_features(motion.part(round(settling * _RATE)))
-
-    streams = np.random.SeedSequence(0).spawn(len(runs))
-    rows = Parallel(n_jobs=-1, prefer="threads")(
-        delayed(features)(*run, stream) for run, stream in zip(runs, streams, strict=True)
-    )
-    table, shape = np.array(rows).reshape(len(runs), len(FEATURES)), columns[0].shape
+    runs = [*zip(*(x.ravel().tolist() for x in columns), strict=True)]
+    rows = Parallel(n_jobs=-1, prefer="threads")(delayed(_features)(*run, seconds) for run in runs)
     return Sweep(
-        np.array([at for _, at in runs], dtype=object).reshape(shape),
-        {name: table[:, i].reshape(shape) for i, name in enumerate(FEATURES)},
+        tuple(KnownCondition(v, fit, support, one.material) for one, v, fit, support in runs),
+        dict(zip(FEATURES, np.array(rows).reshape(-1, len(FEATURES)).T, strict=True)),
     )
 
 
-def motion_features(motion: Motion) -> NDArray[np.float64]:
-    """Return the values of `FEATURES` for a motion, shape (8,) [Hz, Nm, rad/s, -]."""
+def _features(
+    rig: Rig, speed: float, interference: float, support_stiffness: float, seconds: float
+) -> list[float]:
+    """Return the values of `FEATURES` at one condition."""
+    motion = simulate_motion(
+        rig, ConstantSpeed(speed), interference=interference,
+        support_stiffness=support_stiffness, seconds=seconds, rate=_RATE,
+    )  # fmt: skip
     slips, torque = motion_slips(motion), motion.torque
-    return np.array([
+    return [
         slips.times.size, slips.rate, np.mean(motion.stuck), np.mean(torque), np.std(torque),
         np.min(torque), np.max(torque), np.sqrt(np.mean(motion.clamp_speed**2)),
-    ])  # fmt: skip
+    ]  # fmt: skip
