@@ -15,7 +15,6 @@ from models.schema import (
     Vector,
     refuse_impossible,
 )
-from models.show import short_repr
 
 HIGHEST_PLATE_FREQUENCY = 16e3
 """Highest mode of the plate [Hz]: measured creaks fill the band up to 15 kHz."""
@@ -96,7 +95,6 @@ class Beams:
         return self.density * self.width * self.thickness
 
 
-@short_repr
 @dataclass(frozen=True)
 class Plate:
     """Baseplate that the beams' anchors stand on, with simply supported edges.
@@ -182,7 +180,6 @@ def refuse_plate(plate: Plate, where: str) -> None:
         )
 
 
-@short_repr
 @dataclass(frozen=True)
 class Microphone:
     """Microphone over the plate.

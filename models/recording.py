@@ -20,7 +20,6 @@ REFERENCE_PRESSURE = 20e-6
 """Reference of sound pressure levels [Pa]."""
 
 
-@short_repr
 @dataclass(frozen=True)
 class Channel:
     """Channel of a recording: its quantity, position and direction.

@@ -172,7 +172,6 @@ def support_name(support: float) -> str:
     return "fixed" if math.isinf(support) else f"{support:.6g}"
 
 
-@short_repr
 @dataclass(frozen=True)
 class Fit:
     """Properties of the bushing at one interference fit.

@@ -17,7 +17,6 @@ from typing import Any
 
 from models.errors import ParameterError
 from models.schema import Quantity, as_table, refuse_unknown
-from models.show import short_repr
 from models.units import CHANNEL_UNITS
 
 FROM_RECORDINGS = "from recordings"
@@ -49,7 +48,6 @@ _KEYS = {"noise": "noise", "full_scale": "range", "bits": "bits", "antialias": "
 """Keys of the rig file's table, by the names of the fields."""
 
 
-@short_repr
 @dataclass(frozen=True)
 class Sensor:
     """Sensor of one kind of channel, with its amplifier, filter and converter.
@@ -89,7 +87,6 @@ class Sensor:
         return replace(other, **{name: x for name, x in own.items() if x is not None})
 
 
-@short_repr
 @dataclass(frozen=True)
 class Sensors:
     """Sensors of a rig by kind of channel.

@@ -27,7 +27,6 @@ from numpy.typing import NDArray
 from scipy.signal import butter, firwin, resample_poly, sosfilt, sosfilt_zi, upfirdn
 
 from models.sensors import Sensor, Sensors
-from models.show import short_repr
 
 CONVERTER_GAIN = {
     "torque": 82.0,
@@ -55,7 +54,6 @@ _FILTER_HALF_LENGTH = 10
 """Half length of the linear-phase anti-alias filter, in output samples."""
 
 
-@short_repr
 @dataclass(frozen=True)
 class Acquisition:
     """Sampling rate, noise and sensors of a recording.

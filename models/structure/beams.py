@@ -243,11 +243,7 @@ def rigid_clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: f
     -------
     float
         [kg m2]; with it the first torsional mode of clamp and beams is sqrt(k_B / J_C) / (2 pi).
-
-    Raises
-    ------
-    ParameterError
-        If the inertia of the beams exceeds J_C.
+        0 where the inertia of the beams exceeds J_C.
 
     Examples
     --------
@@ -256,18 +252,6 @@ def rigid_clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: f
     >>> round(1 / rigid_clamp_inertia(steel, 2214.0, 1 / 1200))
     1688
     """
-    inertia = _clamp_inertia(beams, support_stiffness, clamp_inertia)
-    if inertia <= 0.0:
-        raise ParameterError(
-            f"beams of {beam_length(beams, support_stiffness):.3g} m, for {support_stiffness:.4g} "
-            f"Nm/rad, have more inertia than the clamp's {clamp_inertia:.4g} kg m2 that is to "
-            "include them; use a larger support stiffness or clamp inertia"
-        )
-    return inertia
-
-
-def _clamp_inertia(beams: Beams, support_stiffness: float, clamp_inertia: float) -> float:
-    """Return the inertia of the clamp alone [kg m2], or 0 where the beams' exceeds J_C."""
     omega2 = support_stiffness / clamp_inertia
     half = _half_structure(beams, support_stiffness)
     dynamic = 2 * (half.stiffness - omega2 * half.mass)
@@ -301,7 +285,7 @@ def on_anchors(beams: Beams, support_stiffness: float, clamp_inertia: float) -> 
     >>> [on_anchors(steel, k, 1 / 1200).anchor_rotation for k in (1000.0, 2214.0)]
     [inf, 250.0]
     """
-    if _clamp_inertia(beams, support_stiffness, clamp_inertia) > 0.0:
+    if rigid_clamp_inertia(beams, support_stiffness, clamp_inertia) > 0.0:
         return beams
     return replace(beams, anchor_rotation=math.inf, anchor_translation=math.inf)
 
@@ -366,7 +350,14 @@ def beam_structure(
     length = beam_length(beams, support_stiffness)
     half = _half_structure(beams, support_stiffness)
     stiffness, mass = 2 * half.stiffness, 2 * half.mass
-    mass[0, 0] += rigid_clamp_inertia(beams, support_stiffness, clamp_inertia)
+    inertia = rigid_clamp_inertia(beams, support_stiffness, clamp_inertia)
+    if inertia == 0.0:
+        raise ParameterError(
+            f"beams of {length:.3g} m, for {support_stiffness:.4g} Nm/rad, have more inertia than "
+            f"the clamp's {clamp_inertia:.4g} kg m2 that is to include them; use a larger support "
+            "stiffness or clamp inertia"
+        )
+    mass[0, 0] += inertia
     omega2, shapes = eigh(stiffness, mass)
 
     inputs = np.zeros((mass.shape[0], 2))

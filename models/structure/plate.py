@@ -21,7 +21,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from models.bench import Microphone, Plate
 from models.radiation.rayleigh import element_middles, rayleigh_integral
-from models.show import short_repr
 from models.structure.modal import ModalModel, add_ringing
 
 
@@ -59,7 +58,6 @@ MODES_AT_ONCE = 32
 """Mode shapes in memory at a time, 15 MB for a plate of half a square metre."""
 
 
-@short_repr
 @dataclass(frozen=True, eq=False)
 class PlateModes:
     """Modes of a plate by rising frequency.

@@ -29,7 +29,6 @@ from models.condition import CONDITION, same_support
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.schema import ReadBy
-from models.show import short_repr
 from models.transfer_functions.files import read_transfer_function
 from models.transfer_functions.transfer_function import (
     TransferFunction,
@@ -58,7 +57,6 @@ def _response(path: Path, key: str, where: str, unit: str) -> TransferFunction:
     return transfer
 
 
-@short_repr
 @dataclass(frozen=True, eq=False)
 class MeasuredResponse:
     """Responses measured with one support.

@@ -44,7 +44,6 @@ from models.errors import ParameterError
 from models.radiation.rayleigh import AIR_DENSITY, SOUND_SPEED
 from models.radiation.rig_response import anchor_drives, first_mode_damping
 from models.rig import Rig
-from models.show import short_repr
 from models.structure.beams import ANCHOR_FORCE, ANCHOR_MOMENT, TORQUE, beam_length, beam_structure
 from models.structure.plate import PlateModes, plate_modes
 from sim.effects import EFFECTS
@@ -74,7 +73,6 @@ LOWEST, HIGHEST = 50.0, 10e3
 """Middles of the lowest and the highest band [Hz]."""
 
 
-@short_repr
 @dataclass(frozen=True, eq=False)
 class BandPower:
     """Sound power per one-third octave.

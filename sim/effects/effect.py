@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError
 from models.schema import did_you_mean
-from models.show import short_repr
 from sim.parameters import Parameter as Parameter, resolve
 
 if TYPE_CHECKING:
@@ -51,7 +50,6 @@ class Stage(StrEnum):
     MEASUREMENT = "measurement"
 
 
-@short_repr
 @dataclass(frozen=True)
 class Effect:
     """Effect: its name, stage, forms, parameters and functions.
