@@ -419,3 +419,68 @@ def _bent(x: Array) -> Array:
     size = np.abs(x)
     large = np.sign(x) * np.sqrt(_BEND * np.maximum(2.0 * size - _BEND, 0.0))
     return np.asarray(np.where(size <= _BEND, x, large))
+
+
+# --- torque levels of a fitted recording ----------------------------------------------------------
+
+_FAST = 0.6
+"""Share of the fastest sliding speed above which the contact slides fast; assumed."""
+
+_SLOW = 0.6
+"""Sliding speed over the shaft's speed below which the contact is slow; assumed."""
+
+_LEAST_SAMPLES = 20
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Torque levels of one recording.
+
+    Parameters
+    ----------
+    mean : float
+        Of the torque [Nm].
+    critical, kinetic : float
+        Median of the highest torque of each cycle, and torque of the contact in fast sliding [Nm].
+    slips : int
+        Number of slips.
+    """
+
+    mean: float
+    critical: float
+    kinetic: float
+    slips: int
+
+
+def torque_levels(fit: BushingFit) -> Levels:
+    """Return the torque levels of a fitted recording.
+
+    Parameters
+    ----------
+    fit : BushingFit
+
+    Returns
+    -------
+    Levels
+        If nothing sticks, critical and kinetic torque are the mean torque of the contact.
+    """
+    torque, contact = fit.spectrum.torque, fit.contact
+    v = contact.sliding_speed
+    mean = float(np.mean(torque))
+    fastest = float(np.quantile(v, 0.995))
+    fast = v > max(_FAST * fastest, 1.1 * float(np.mean(fit.spectrum.shaft_speed)))
+    begins = _slips(v, fit.spectrum.shaft_speed)
+    if begins.size < 2 or fast.sum() < _LEAST_SAMPLES:
+        return Levels(mean, mean, mean, 0)
+    peaks = np.array([
+        np.max(torque[a:b]) for a, b in itertools.pairwise(begins)
+    ])  # fmt: skip
+    sliding = float(np.mean(contact.torque[fast]))
+    return Levels(mean, float(np.median(peaks)), sliding, int(begins.size))
+
+
+def _slips(v: Array, shaft_speed: Array) -> NDArray[np.int64]:
+    """Return the samples at which the contact begins to slide, having been slow before."""
+    state = np.where(v > shaft_speed, 1, np.where(v < _SLOW * shaft_speed, -1, 0))
+    clear = np.flatnonzero(state)
+    return np.asarray(clear[1:][(state[clear[1:]] == 1) & (state[clear[:-1]] == -1)])

@@ -6,35 +6,44 @@ the shipped bench; `noise.diagnose` shows how far off they are.
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from models.bushing import TemperatureDependence
 from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import rig_text
 from models.schema import remarks
+from noise.base import SURE_90
 from noise.diagnosis.bench.check import unit_findings
-from noise.identification.bushing_fit import fit_bushing
-from noise.identification.bushing_numbers import (
-    bushing_numbers,
-    law_numbers,
-    read_again,
-    torque_levels,
-)
-from noise.identification.law_fit import MARGIN, choose_law
-from noise.identification.law_model import CANDIDATES, Candidate, subjects_of
+from noise.identification.bushing_fit import fit_bushing, torque_levels
+from noise.identification.law_fit import MARGIN, LawFit, choose_law
+from noise.identification.law_model import CANDIDATES, LOCAL, Candidate, subjects_of
 from noise.identification.measured import (
     Beforehand,
     Measurements,
     known_beforehand,
     read_measurements,
 )
-from noise.identification.outcome import Identification, LawScore, Number, RecordingFit, as_json
+from noise.identification.outcome import (
+    UNITS,
+    Forecast,
+    Identification,
+    LawScore,
+    Number,
+    RecordingFit,
+    as_json,
+)
+from sim.effects import EFFECTS
+from sim.friction import friction_law
 
 
 class NothingSlipsError(ParameterError):
@@ -329,3 +338,147 @@ def _assumed(
     if steady:
         undetermined.append(f"critical torque from {', '.join(steady)}: nothing slips there")
     return tuple(assumed), tuple(undetermined)
+
+
+# --- numbers with 90 % intervals -----------------------------------------------------------------
+
+_OF_THE_LAW = {
+    "elastomer_stiffness": (0.015, 0.01),
+    "damping": (0.13, 0.055),
+    "elastomer_inertia": (0.03, 0.02),
+    "clamp_inertia": (0.02, 0.01),
+    "elastomer_damping_share": (0.2, 0.1),
+}
+"""Relative systematic error, because no law is exact, of a law whose contact creeps and of one that
+truly sticks [-]; from 26 development rigs of `tests.blind.identify`, seed 1."""
+
+_TORQUE_SCATTER, _TORQUE_SHARED = 0.018, 0.003
+"""Relative scatter of a level between recordings at one speed, and its systematic error by the
+low-pass filter [-]; from the same 26 rigs."""
+
+
+def read_again(recordings: Sequence[RecordingFit], fit: LawFit) -> list[RecordingFit]:
+    """Return the recordings with the bushings that the fit of the law gave them.
+
+    Parameters
+    ----------
+    recordings : sequence of RecordingFit
+    fit : LawFit
+
+    Returns
+    -------
+    list of RecordingFit
+        Recordings that the law was not fitted to are unchanged.
+    """
+    model, own = fit.model, {}
+    for subject, numbers, torque in zip(
+        model.subjects, np.exp(model.local(fit.vector)).tolist(), model.predicted(fit.vector),
+        strict=True,
+    ):  # fmt: skip
+        e = subject.excerpts
+        middle = e.starts.size // 2
+        forecast = None if torque is None else Forecast(e.rate, e.torque[middle], torque[middle])
+        own[id(subject.measured)] = model.bushing(numbers, subject), forecast
+    again = []
+    for one in recordings:
+        bushing, forecast = own.get(id(one.measured), (None, None))
+        if bushing is not None:
+            refitted = replace(one.fit, bushing=bushing)
+            one = RecordingFit(one.measured, refitted, torque_levels(refitted), forecast)
+        again.append(one)
+    return again
+
+
+def bushing_numbers(recordings: Sequence[RecordingFit], fit: LawFit) -> list[Number]:
+    """Return the rig's numbers.
+
+    Parameters
+    ----------
+    recordings : sequence of RecordingFit
+        As of `read_again`.
+    fit : LawFit
+        To all recordings that slip.
+
+    Returns
+    -------
+    list of Number
+        Stiffness and torques by interference, damping by interference and support, inertias.
+    """
+    stiffness, *others = (_of_fit(fit, name) for name in _OF_THE_LAW)
+    return [*stiffness, *_levels(recordings), *itertools.chain(*others)]
+
+
+def _of_fit(fit: LawFit, name: str) -> list[Number]:
+    model, place = fit.model, LOCAL.index(name)
+    means, spread = model.means(fit.vector), np.sqrt(np.diag(fit.covariance))
+    shared = _OF_THE_LAW[name][model.candidate.sticks]
+    numbers = []
+    for g, (i, key) in enumerate(model.groups):
+        if i == place:
+            at = key if isinstance(key, tuple) else (key, None)
+            error = math.hypot(float(spread[model.n_local + g]), shared)
+            n = int(np.sum(model.group_of[:, i] == g))
+            numbers.append(_number(name, UNITS[name], math.exp(means[g]), error, n, *at))
+    return sorted(numbers, key=lambda n: (n.interference or 0.0, n.support_stiffness or 0.0))
+
+
+def _number(name: str, unit: str, value: float, error: float, n: int, *at: float | None) -> Number:
+    """Return a number with the 90 % interval of its relative standard error."""
+    away = math.exp(SURE_90 * error)
+    return Number(name, unit, value, value / away, value * away, n, *at)
+
+
+def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
+    """Return the mean torque levels of the recordings by interference."""
+    numbers = []
+    for name in ("critical_torque", "kinetic_torque"):
+        groups: dict[float, list[float]] = defaultdict(list)
+        for one in recordings:
+            if one.levels.slips:
+                level = getattr(one.levels, name.removesuffix("_torque"))
+                groups[one.measured.condition.interference].append(level)
+        for at, values in sorted(groups.items()):
+            # levels that change with speed make their mean no less certain
+            value, n = float(np.exp(np.mean(np.log(values)))), len(values)
+            error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
+            numbers.append(_number(name, UNITS[name], value, error, n, at))
+    return numbers
+
+
+def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
+    """Return the torques and parameters of the friction law.
+
+    Parameters
+    ----------
+    fit : LawFit
+        To all recordings.
+    rig : Rig
+        Rig identified by the fit.
+    """
+    model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
+    error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
+    numbers = []
+    for one in rig.fits:
+        g = model.groups.index((LOCAL.index("kinetic_torque"), one.interference))
+        n = int(np.sum(model.group_of[:, LOCAL.index("kinetic_torque")] == g))
+        kinetic, drop = (
+            error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
+        )
+        critical = math.hypot(kinetic, (1.0 - one.kinetic_torque / one.critical_torque) * drop)
+        for name, value, of in (
+            ("law_kinetic_torque", one.kinetic_torque, kinetic),
+            ("law_critical_torque", one.critical_torque, critical),
+        ):
+            numbers.append(_number(name, "Nm", value, min(of, _UNKNOWN), n, one.interference))
+    candidate = model.candidate
+    own = EFFECTS[candidate.effect].parameters if candidate.effect else None
+    units = own or friction_law(candidate.law).parameters
+    for i, name in enumerate(candidate.free, start=model.n_common):
+        unit, error_of = units[name].unit, min(float(spread[i]), _UNKNOWN)
+        value, n = math.exp(fit.vector[i]), len(model.subjects)
+        numbers.append(_number(f"friction.{name}", unit, value, error_of, n))
+    return numbers
+
+
+_UNKNOWN = 2.0
+"""Largest relative standard error that is stated for a number of the law [-]."""

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from noise.base.arrays import Array
-    from noise.identification.bushing_fit import BushingFit
-    from noise.identification.bushing_numbers import Levels
+    from noise.identification.bushing_fit import BushingFit, Levels
     from noise.identification.measured import Measured
 
 
@@ -155,7 +154,7 @@ class Identification:
     Examples
     --------
     >>> stiffness = Number("elastomer_stiffness", "Nm/rad", 665.0, 655.0, 675.0, 6, 0.279e-3)
-    >>> Identification("", (stiffness,), (), "constant", ()).number("elastomer_stiffness").high
+    >>> Identification("", (stiffness,), (), "constant", ()).numbers[0].high
     675.0
     """
 
@@ -171,23 +170,6 @@ class Identification:
     held_out: tuple[str, ...] = ()
     margin: float = 0.0
     seconds: float = field(default=0.0, compare=False)
-
-    def number(
-        self, name: str, interference: float | None = None, support: float | None = None
-    ) -> Number:
-        """Return a number by name, and by interference [m] and support [Nm/rad] where it has them.
-
-        Raises
-        ------
-        KeyError
-            There is none.
-        """
-        for one in self.numbers:
-            if one.name == name and (interference, support) in (
-                (None, None), (one.interference, None), (one.interference, one.support_stiffness)
-            ):  # fmt: skip
-                return one
-        raise KeyError(name)
 
     def to_pandas(self) -> DataFrame:
         """Return one row per number as a data frame of pandas, as ``identification.json`` names it.

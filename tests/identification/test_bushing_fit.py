@@ -12,8 +12,7 @@ from models.errors import ParameterError
 from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec
 from models.rig_file import load_material_rig
-from noise.identification.bushing_fit import Known, fit_bushing
-from noise.identification.bushing_numbers import torque_levels
+from noise.identification.bushing_fit import Known, fit_bushing, torque_levels
 from noise.identification.measured import measured
 from sim.acquisition import Acquisition
 from sim.run import simulate

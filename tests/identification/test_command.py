@@ -131,7 +131,8 @@ def test_an_empty_folder_is_an_unusable_call(tmp_path):
 def test_a_notebook_gets_the_same(folder):
     identified = noise.identify(folder, folder / "known.toml")
     assert identified.law
-    assert identified.number("elastomer_stiffness").n_recordings == 3
+    stiffness = next(one for one in identified.numbers if one.name == "elastomer_stiffness")
+    assert stiffness.n_recordings == 3
 
 
 @pytest.mark.parametrize(
