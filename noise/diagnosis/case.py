@@ -21,8 +21,7 @@ from noise.base.arrays import Array
 from noise.diagnosis.bench.channels import length_unit, misplaced_torque
 from noise.diagnosis.bench.check import refuse_unusable
 from noise.diagnosis.gap import KINDS
-from noise.diagnosis.preparation.prepare import measured_speed, prepared
-from noise.diagnosis.preparation.settled_part import shortest
+from noise.diagnosis.prepare import measured_speed, prepared, shortest
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 
@@ -245,7 +244,7 @@ class Case:
     names : tuple of str
         Of the files.
     recordings : tuple of Recording
-        As `noise.diagnosis.preparation.prepare.prepared` gives them.
+        As `noise.diagnosis.prepare.prepared` gives them.
     refused : tuple of (str, str)
         Name and reason of what was left out.
     notes : tuple of str

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.preparation.prepare import HIGHEST_RATE, LONGEST, bounded
+from noise.diagnosis.prepare import HIGHEST_RATE, LONGEST, bounded
 
 RIG = load_material_rig("fluorocarbon-thesis")
 

@@ -17,7 +17,7 @@ from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.evidence.summary import lacking_coherence
 from noise.diagnosis.first_answer import unlearned_sensors
 from noise.diagnosis.gap import NAMES, Gap
-from noise.diagnosis.preparation.prepare import estimated_noise, with_estimated_sensors
+from noise.diagnosis.prepare import estimated_noise, with_estimated_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions

@@ -50,7 +50,7 @@ from noise.diagnosis.evidence.summary import (
     evidence,
     scale_of,
 )
-from noise.diagnosis.preparation.prepare import prepared
+from noise.diagnosis.prepare import prepared
 from noise.diagnosis.simulated.repeats import CHANNELS
 from noise.training.causes.cases.draw import SHARED, DrawnCase, Truth, draw_case, visible_through
 from noise.training.trees import as_arrays, boosted_nodes

@@ -1,1 +1,0 @@
-"""Preparation of recordings: settled part, measured speed and noise of the sensors."""
