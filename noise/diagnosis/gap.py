@@ -32,7 +32,6 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
-from typing import TypeVar
 
 import numpy as np
 from scipy.stats import t as students_t
@@ -205,8 +204,6 @@ def block_signatures(recording: Recording) -> Array | None:
     ])  # fmt: skip
 
 
-_Distance = TypeVar("_Distance", float, Array)
-
 _BEND = 3.0
 """Deviations beyond so many standard deviations count linearly; assumed."""
 
@@ -310,8 +307,6 @@ class Gap:
         Probability of so large a gap between repeats.
     of_recordings : ndarray, shape (n_recordings,)
         Distance of each recording, in floors [-].
-    widened : float
-        By how much the floor is larger than the repeats alone had it [-].
     of_channels : ndarray, shape (n_recordings, n_kinds)
         Distance of each recording in each kind of channel, in floors of its own; NaN where there
         is none, and none at all where it was not asked for [-].
@@ -320,7 +315,6 @@ class Gap:
     distance: float
     p_value: float
     of_recordings: Array
-    widened: float = 1.0
     of_channels: Array = field(default_factory=lambda: np.empty((0, len(KINDS))))
 
 
@@ -523,14 +517,12 @@ def _squared(deviation: Array) -> float:
     return float(np.nanmean(group_costs(deviation)))
 
 
-def closed_fraction(
-    before: _Distance, after: _Distance, floor: _Distance | float = 1.0
-) -> _Distance:
+def closed_fraction(before: float, after: float, floor: float = 1.0) -> float:
     """Share of what lies above the floor that is closed; negative where the gap grew [-].
 
     Parameters
     ----------
-    before, after, floor : float or ndarray, shape (n,)
+    before, after, floor : float
         Gaps without and with a change, and that of repeats, all in floors [-].
 
     Examples
@@ -666,10 +658,9 @@ def repeat_gap(
     Gap
     """
     signatures = [signature(recording) for recording in recordings]
-    references, widened = references_of(recordings, signatures, repeats, least=least, seed=seed)
+    references = references_of(recordings, signatures, repeats, least=least, seed=seed)
     return replace(
         gap_of(signatures, references, seed=seed),
-        widened=widened,
         of_channels=channel_distances(signatures, references),
     )
 
@@ -681,7 +672,7 @@ def references_of(
     *,
     least: float = LEAST_SCALE,
     seed: int = 0,
-) -> tuple[list[Reference], float]:
+) -> list[Reference]:
     """Return what each recording is compared with: repeats, as far apart as the recordings' own.
 
     Parameters
@@ -694,10 +685,8 @@ def references_of(
 
     Returns
     -------
-    references : list of Reference
+    list of Reference
         One a recording; recordings of one condition share one.
-    widened : float
-        By how much the floor is wider than the repeats alone have it [-].
     """
     own: dict[tuple[float, ...], list[Array]] = {}
     for recording, values in zip(recordings, signatures, strict=True):
@@ -714,7 +703,7 @@ def references_of(
         s = np.array(repeats[key])
         mean = s.mean(axis=0)
         references[key] = reference(list(mean + each * (s - mean)), least=least, seed=seed)
-    return [references[condition_key(r)] for r in recordings], float(np.sqrt(np.mean(wider**2)))
+    return [references[condition_key(r)] for r in recordings]
 
 
 def floor_widening(repeated: Sequence[tuple[Sequence[Array], Sequence[Array]]]) -> Array:

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from models.condition import Condition
+from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings, perturb_rig
+from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats, perturb_rig
 from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
     predict,
     shift_clamp_mode,
     torque_transfer_functions,
@@ -28,12 +30,15 @@ def _mode(f, at=259.0, damping=0.02):
     return -(x**2) / (1.0 - x**2 + 2j * damping * x)
 
 
-def _measured(response):
+def _rig(response):
+    """A rig whose both responses were measured."""
     frf = TransferFunction(LINES, response.astype(complex), None, "N m", "m/s^2")
     entry = MeasuredResponse(2214.0, frf, replace(frf, output_unit="Pa"))
-    return torque_transfer_functions(replace(RIG, measured=(entry,)), 0.279e-3, 2214.0)[
-        "acceleration"
-    ]
+    return replace(RIG, measured=(entry,))
+
+
+def _measured(response):
+    return torque_transfer_functions(_rig(response), 0.279e-3, 2214.0)["acceleration"]
 
 
 def test_between_its_lines_a_resonance_is_what_it_is():
@@ -77,16 +82,10 @@ def test_a_lighter_clamp_rings_higher():
 
 
 def test_a_quiet_steady_rig_is_quiet_from_start_to_end_of_a_recording():
-    condition = Condition(speed=8.0, interference=0.279e-3, support_stiffness=2214.0)
-    transfer = _measured(_mode(LINES))
-    (run,) = nominal_recordings(
-        RIG,
-        condition,
-        {"acceleration": transfer, "pressure": transfer},
-        rate=30e3,
-        seconds=0.5,
-        seeds=(1,),
-    )
+    at = Condition(speed=8.0, interference=0.279e-3, support_stiffness=2214.0)
+    rig = _rig(_mode(LINES))
+    template = Recording(np.zeros((1, 15_000)), 30e3, (Channel("torque"),), at)
+    (run,) = nominal_repeats(template, rig, TransferFunctionCache(rig), (1,))
     assert np.abs(run["acceleration"]).max() < 0.5
 
 

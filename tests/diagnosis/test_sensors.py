@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
@@ -19,8 +20,8 @@ from noise.diagnosis.first_answer import unlearned_sensors
 from noise.diagnosis.gap import NAMES, Gap
 from noise.diagnosis.prepare import estimated_noise, with_estimated_sensors
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
-from noise.diagnosis.simulated.repeats import Scatter, nominal_recordings
-from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
+from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
+from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
 from sim.run import simulate
@@ -42,12 +43,9 @@ def sensed(**by_kind):
 
 
 def nominal(rig, scatter=EXACT):
-    here = at(2.0)
-    transfers = torque_transfer_functions(RIG, here.interference, here.support_stiffness)
-    (one,) = nominal_recordings(
-        rig, here, transfers, rate=RATE, seconds=SECONDS, seeds=[1], scatter=scatter
-    )
-    return one
+    samples = np.zeros((1, round(SECONDS * RATE)))
+    template = Recording(samples, RATE, (Channel("torque"),), at(2.0))
+    return nominal_repeats(template, rig, TransferFunctionCache(RIG), [1], scatter)[0]
 
 
 def test_repeats_are_filtered_as_recordings_are():

@@ -126,7 +126,7 @@ class CaseComparison:
         self.references = self._references()
 
     def _references(self) -> list[Reference]:
-        return references_of(self.recordings, self.signatures, self._all_repeats())[0]
+        return references_of(self.recordings, self.signatures, self._all_repeats())
 
     def _all_repeats(self) -> dict[tuple[float, ...], list[NDArray[np.float64]]]:
         return {

@@ -49,13 +49,10 @@ _RUNNING_OUT = 0.12
 """Simulated after a recording ends [s]."""
 
 
-def nominal_recordings(
+def nominal_repeats(
+    template: Recording,
     rig: Rig,
-    condition: KnownCondition,
-    transfer_functions: Mapping[str, TransferFunction],
-    *,
-    rate: float,
-    seconds: float,
+    transfer_functions: TransferFunctionCache,
     seeds: Sequence[int],
     scatter: Scatter | None = None,
     library: Mapping[str, Effect] | None = None,
@@ -64,12 +61,11 @@ def nominal_recordings(
 
     Parameters
     ----------
+    template : Recording
+        At whose condition, rate and length.
     rig : Rig
-    condition : KnownCondition
-    transfer_functions : mapping of str to TransferFunction
-        As `torque_transfer_functions` gives them for this condition.
-    rate, seconds : float
-        [Hz], [s]
+    transfer_functions : TransferFunctionCache
+        Of the rig.
     seeds : sequence of int
         One a repeat.
     scatter : Scatter, optional
@@ -85,16 +81,14 @@ def nominal_recordings(
     ParameterError
         The rig cannot be simulated.
     """
-    scatter = scatter or Scatter()
+    condition, rate = known_condition(template.condition), template.rate
+    functions, scatter = transfer_functions.of(template), scatter or Scatter()
     effects = activated(rig.effects, library or EFFECTS)
     if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
-        return [
-            _with_effects(rig, condition, effects, transfer_functions, rate, seconds, seed, scatter)
-            for seed in seeds
-        ]
+        return [_with_effects(rig, template, effects, functions, seed, scatter) for seed in seeds]
     decimation = DIAGNOSIS.decimation(rate)
     before = round(DIAGNOSIS.settling * rate)
-    recorded = slice(before, before + round(seconds * rate))
+    recorded = slice(before, before + template.samples.shape[1])
     n = (recorded.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
@@ -103,7 +97,7 @@ def nominal_recordings(
     for seed in seeds:
         rng = np.random.default_rng(seed)
         once, own = perturb_run(rig, condition, scatter, rng)
-        plan = plan_repeat(once, own, effects, rate=DIAGNOSIS.rate(rate), seconds=seconds)
+        plan = plan_repeat(once, own, effects, rate=DIAGNOSIS.rate(rate), seconds=template.duration)
         motion = repeat_motion(replace(plan, n_settling=0, n_recorded=n), rng)
         # What a sensor's filter does to a sound, it does to the torque that makes it.
         by_filter = {
@@ -114,7 +108,7 @@ def nominal_recordings(
         lumped = lumped_bushing(once, *at)
         outputs: dict[str, Array] = {}
         for corner in {corners[name] for name in OUTPUTS}:
-            paths = {n: transfer_functions[n] for n in OUTPUTS if corners[n] == corner}
+            paths = {n: functions[n] for n in OUTPUTS if corners[n] == corner}
             mean = by_filter[corner][recorded].mean()
             torque = mean + faded(by_filter[corner] - mean, rate)
             spectrum = with_clamp_shifted(
@@ -129,36 +123,6 @@ def nominal_recordings(
         through = rig.sensors.unfiltered()
         recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
     return recordings
-
-
-def nominal_repeats(
-    template: Recording,
-    rig: Rig,
-    transfer_functions: TransferFunctionCache,
-    seeds: Sequence[int],
-    scatter: Scatter | None = None,
-    library: Mapping[str, Effect] | None = None,
-) -> list[Recording]:
-    """Simulate repeats at the condition, rate and length of a recording.
-
-    Parameters
-    ----------
-    template : Recording
-    rig : Rig
-    transfer_functions : TransferFunctionCache
-        Of the rig.
-    seeds, scatter, library
-        As of `nominal_recordings`.
-
-    Returns
-    -------
-    list of Recording
-    """
-    return nominal_recordings(
-        rig, known_condition(template.condition), transfer_functions.of(template),
-        rate=template.rate, seconds=template.duration, seeds=seeds, scatter=scatter,
-        library=library,
-    )  # fmt: skip
 
 
 def condition_key(recording: Recording) -> tuple[float, ...]:
@@ -180,15 +144,14 @@ def condition_key(recording: Recording) -> tuple[float, ...]:
 
 def _with_effects(
     rig: Rig,
-    condition: KnownCondition,
+    template: Recording,
     effects: Sequence[ActiveEffect],
     transfer_functions: Mapping[str, TransferFunction],
-    rate: float,
-    seconds: float,
     seed: int,
     scatter: Scatter,
 ) -> Recording:
     """Simulate a repeat with effects beyond the contact, as models are that a fit compares."""
+    condition, rate = known_condition(template.condition), template.rate
     rng, fine = np.random.default_rng(seed), DIAGNOSIS.rate(rate)
     once, own = perturb_run(rig, condition, scatter, rng)
     at = (condition.interference, condition.support_stiffness)
@@ -196,10 +159,9 @@ def _with_effects(
     shifted = {name: shift_clamp_mode(h, bushing, lumped) for name, h in transfer_functions.items()}
     impacts = any(active.effect.force or active.effect.chain for active in effects)
     paths = chain_of(rig, *at, shifted, fine, impacts=impacts)
-    paths = apply_chain_effects(
-        paths, effects, np.random.default_rng(0)
-    )  # one structure for all runs
-    plan = plan_repeat(once, own, effects, rate=fine, seconds=seconds)
+    one_structure = np.random.default_rng(0)  # for all runs
+    paths = apply_chain_effects(paths, effects, one_structure)
+    plan = plan_repeat(once, own, effects, rate=fine, seconds=template.duration)
     motion = repeat_motion(plan, rng)
     signals = sensor_signals(motion, radiate_motion(motion, paths, effects), plan.n_settling)
     signals = apply_sensor_effects(signals, effects, fine, rng)
@@ -349,10 +311,6 @@ class Scatter:
     gain: float = 0.01
     noise: float = 0.1
 
-    def structure_factor(self, rng: np.random.Generator) -> float:
-        """Draw by what a value of the structure differs in one run [-]."""
-        return float(np.exp(self.structure * rng.normal()))
-
 
 def perturb_run(
     rig: Rig,
@@ -388,9 +346,9 @@ def perturb_run(
     """
     stiffness = condition.support_stiffness
     if support and not math.isinf(stiffness):
-        stiffness *= scatter.structure_factor(rng)
+        stiffness *= float(np.exp(scatter.structure * rng.normal()))
     once = perturb_rig(rig, scatter, rng)
-    speed = condition.speed * scatter.structure_factor(rng)
+    speed = condition.speed * float(np.exp(scatter.structure * rng.normal()))
     return once, replace(condition, speed=speed, support_stiffness=stiffness)
 
 

@@ -8,7 +8,6 @@ that were not determined are left out.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from statistics import NormalDist
 
@@ -60,13 +59,6 @@ _NOT_AT_ALL = 0.5
 
 _NOTHING = 0.005
 """Share below which a fit closes nothing [-]: it would be rounded to 0 %."""
-
-_COLUMNS = {
-    "speed_rad_s": ("speed", "rad/s"),
-    "interference_mm": ("interference", "mm"),
-    "support_stiffness_Nm_rad": ("support stiffness", "Nm/rad"),
-    "temperature_C": ("temperature", "degree C"),
-}
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -345,7 +337,8 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     if place.phase != "all":
         parts.append(PHASES.get(place.phase, f"in the phase {place.phase}"))
     if place.conditions != "all":
-        parts.append(f"where {_conditions(place.conditions)}")
+        limit = place.conditions.replace("speed_rad_s", "speed")
+        parts.append(f"where {limit.replace('>=', '≥').replace('<=', '≤')} rad/s")
     verb = "may show"
     if place.p_value <= SURE:
         verb = "begins" if begins(diagnosis) else "shows"
@@ -374,15 +367,6 @@ def _channels_and_band(place: Location) -> str:
     low, high = place.band
     band = f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"
     return f"in the {joined(place.channels)}, {band}" if place.channels else band
-
-
-def _conditions(limits: str) -> str:
-    """Return conditions with names and units of quantities for those of columns."""
-    for column, (name, unit) in _COLUMNS.items():
-        limits = re.sub(rf"\b{column} *([<>=]+) *([\w.+-]+)", rf"{name} \1 \2 {unit}", limits)
-    return limits.replace(">=", "\N{GREATER-THAN OR EQUAL TO}").replace(
-        "<=", "\N{LESS-THAN OR EQUAL TO}"
-    )
 
 
 def _remainder(diagnosis: Diagnosis) -> str:
