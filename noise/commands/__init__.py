@@ -8,32 +8,9 @@ Its description and the texts of its options are in ``help.toml``. Slow librarie
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from types import ModuleType
 
-if TYPE_CHECKING:
-    from argparse import Namespace
-    from collections.abc import Sequence
-
-    from noise.commands.options import Row
-
-__all__ = ["COMMANDS", "Command", "load_command"]
-
-
-class Command(Protocol):
-    """Interface of the module of a command."""
-
-    OPTIONS: Sequence[Row]
-
-    def run(self, options: Namespace) -> int:
-        """Run the command; return 0, or 1 if inputs were refused.
-
-        Raises
-        ------
-        BushingNoiseError
-            Options contradict each other, or no input can be used.
-        """
-        ...
-
+__all__ = ["COMMANDS", "load_command"]
 
 COMMANDS = {
     "demo": "the whole chain on the rig's three noises and a silent run, with a report",
@@ -56,7 +33,7 @@ COMMANDS = {
 """Commands and their one-line descriptions, in the order of the help."""
 
 
-def load_command(name: str) -> Command:
+def load_command(name: str) -> ModuleType:
     """Import the module of a command.
 
     Examples
@@ -64,4 +41,4 @@ def load_command(name: str) -> Command:
     >>> callable(load_command("train").run)
     True
     """
-    return cast("Command", import_module(f"noise.commands.{name.replace('-', '_')}"))
+    return import_module(f"noise.commands.{name.replace('-', '_')}")

@@ -50,7 +50,6 @@ def run(options: Namespace) -> int:
 
     def export(rows: list[dict[str, object]]) -> list[Path]:
         _note_assumed(rows)
-        _note_speeds(rows)
         return _export(options, rows)
 
     work = Labelling(
@@ -90,19 +89,6 @@ def _note_assumed(rows: list[dict[str, object]]) -> None:
             f"conditions of {counted(number, 'recording')} are inferred {ASSUMED}: no material is "
             "logged"
         )
-
-
-def _note_speeds(rows: list[dict[str, object]]) -> None:
-    """Name the recordings in which the measured speed contradicts the logged one."""
-    from noise.labels.rows import OF_CHANNEL
-
-    names = {str(row["file"]): str(row["note"]) for row in rows if OF_CHANNEL in str(row["note"])}
-    if names:
-        name, remark = next(iter(names.items()))
-        others = (
-            f"; the same in {len(names) - 1} more, see the column note" if len(names) > 1 else ""
-        )
-        note(f"{name}: {remark}{others}")
 
 
 def _check_exports(options: Namespace) -> None:

@@ -76,8 +76,8 @@ MOST_WORKERS = 1024
 """Largest number of processes or threads of a command; systems refuse to start many more."""
 
 
-def whole_number(least: int, *, most: int | None = None, more: str = "") -> Callable[[str], int]:
-    """Return a parser of whole numbers in a range; `more` is appended to its error message.
+def whole_number(least: int, *, most: int | None = None) -> Callable[[str], int]:
+    """Return a parser of whole numbers in a range.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def whole_number(least: int, *, most: int | None = None, more: str = "") -> Call
         decimal = plain.isdecimal() and len(plain) <= _LONGEST_NUMBER
         if not decimal or int(plain) < least or (most is not None and int(plain) > most):
             span = f"of {least} or more" if most is None else f"from {least} to {most}"
-            raise ArgumentTypeError(f"is {text!r}, expected a whole number {span}{more}")
+            raise ArgumentTypeError(f"is {text!r}, expected a whole number {span}")
         return int(plain)
 
     return parse

@@ -23,16 +23,8 @@ from noise.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from noise.batch.journal import Journal
     from noise.screening.design import Swinging, Use
     from noise.screening.screen import Screening
-
-
-def _simulations(text: str) -> float:
-    """Parse the number of simulations; ``all`` is infinite."""
-    if text.strip().lower() == "all":
-        return math.inf
-    return whole_number(1, more=", or all")(text)
 
 
 OPTIONS = (
@@ -57,7 +49,7 @@ OPTIONS = (
         Option("--tolerances"),
         Option("--no-tolerances"),
     ),
-    Option("--simulations N", _simulations),
+    Option("--simulations N", whole_number(1)),
     Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
 )
 
@@ -69,15 +61,32 @@ def run(options: Namespace) -> int:
     from noise.screening.design import load_designs
     from noise.screening.environments import environment
 
-    use = _use(options)
+    use, change = _use(options), _change(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
     for name in environments:
         environment(name)
-    load_designs(options.designs, _change(options))  # refuses bad designs before slow imports
+    load_designs(options.designs, change)  # refuses bad designs before slow imports
     table = None if options.out is None else options.out / "map.csv"
     with temporary_journal(table, call_identity("screening")) as journal:
         with steps("screening", 100, "percent") as bar:
-            screening = _screening(options, use, environments, bar, journal)
+            say("preparing")
+            import numpy as np
+
+            from noise.screening.screen import DEFAULT_SIMULATIONS, screen
+
+            screening = screen(
+                options.designs,
+                use,
+                environments=environments,
+                tolerances=True if options.tolerances else False if options.no_tolerances else None,
+                rng=np.random.default_rng(options.seed),
+                change=change,
+                simulations=options.simulations or DEFAULT_SIMULATIONS,
+                workers=options.workers,
+                progress=say,
+                advance=bar.at,
+                journal=journal,
+            )
         from noise.screening.summary import summary_lines
 
         for name, reason in screening.refused:
@@ -90,35 +99,6 @@ def run(options: Namespace) -> int:
                 written = _write(options, screening, progress)
             report(*written)
     return 1 if screening.refused else 0
-
-
-def _screening(
-    options: Namespace,
-    use: Use,
-    environments: list[str],
-    bar: Steps,
-    journal: Journal | None,
-) -> Screening:
-    """Screen the designs."""
-    say("preparing")
-    import numpy as np
-
-    from noise.screening.screen import DEFAULT_SIMULATIONS, screen
-
-    simulations = options.simulations or DEFAULT_SIMULATIONS
-    return screen(
-        options.designs,
-        use,
-        environments=environments,
-        tolerances=True if options.tolerances else False if options.no_tolerances else None,
-        rng=np.random.default_rng(options.seed or 0),
-        change=_change(options),
-        simulations=None if math.isinf(simulations) else int(simulations),
-        workers=options.workers,
-        progress=say,
-        advance=bar.at,
-        journal=journal,
-    )
 
 
 def _change(options: Namespace) -> Callable[[Rig], Rig] | None:

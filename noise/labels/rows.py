@@ -205,9 +205,6 @@ _SPEED_BLOCK = 0.02
 _BLOCKS_AT_ONCE = 500
 """Means per block of samples that is read."""
 
-OF_CHANNEL = "is that of the channel"
-"""Text of the remark on a measured speed that replaces the logged speed."""
-
 
 def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
     """Return the mean speed of the shaft in a segment, measured or else as logged.
@@ -261,7 +258,7 @@ def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
     if logged is None or speed is None or agrees(speed, logged):
         return ""
     channel = "angle" if blocks.first("speed") is None else "speed"
-    return f"speed {speed:g} rad/s {OF_CHANNEL} {channel}; {logged:g} was logged"
+    return f"speed {speed:g} rad/s is that of the channel {channel}; {logged:g} was logged"
 
 
 def _measured_speed(blocks: RecordingBlocks, start: float, end: float) -> float | None:
