@@ -42,12 +42,6 @@ def test_what_is_audible_stays_and_what_would_fold_back_goes():
     assert high.samples[0, inside].std() < 0.01
 
 
-def test_the_end_of_a_long_recording_is_looked_at():
-    long = _tone(10e3, 5.0)
-    _, (kept,), _ = bounded(RIG, [long])
-    assert np.array_equal(kept.samples, long.samples[:, -20_000:])
-
-
 def test_the_noise_of_a_thinned_sensor_is_what_is_left_of_it():
     rng = np.random.default_rng(0)
     stated = Sensors({"torque": Sensor(noise=0.3, full_scale=2.0, bits=4)})

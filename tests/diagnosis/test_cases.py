@@ -51,27 +51,6 @@ def _without(recording, **conditions):
     return replace(recording, condition=replace(recording.condition, **conditions))
 
 
-def test_a_missing_rig_file_is_named(recordings, tmp_path, capsys):
-    data, _ = write_case(tmp_path, recordings)
-    code, line = _refused(capsys, data, "--rig", tmp_path / "none.toml", "--quick")
-    assert code == 2
-    assert "none.toml" in line
-
-
-def test_a_folder_that_does_not_exist_is_named(recordings, tmp_path, capsys):
-    _, rig = write_case(tmp_path, recordings)
-    code, line = _refused(capsys, tmp_path / "nowhere", "--rig", rig)
-    assert code == 2
-    assert "nowhere" in line
-
-
-def test_an_empty_folder_has_nothing_to_diagnose(tmp_path, capsys):
-    data, rig = write_case(tmp_path, [])
-    code, line = _refused(capsys, data, "--rig", rig)
-    assert code == 2
-    assert "no recording" in line
-
-
 def test_a_folder_of_music_gets_a_line_and_no_name(tmp_path, capsys):
     _, rig = write_case(tmp_path, [])
     _music(tmp_path / "music")
@@ -119,31 +98,6 @@ def test_what_a_recording_lacks_is_said(recordings, change, said):
     assert "\n" not in str(refused.value)
 
 
-def test_without_conditions_nothing_is_diagnosed(recordings, tmp_path, capsys):
-    plain = [
-        _without(only(r, "pressure"), speed=None, interference=None, support_stiffness=None)
-        for r in recordings
-    ]  # fmt: skip
-    data, rig = write_case(tmp_path, plain)
-    code, line = _refused(capsys, data, "--rig", rig)
-    assert code == 1
-    assert "run01.wav" in line
-    assert "speed_rad_s" in line
-
-
-def test_a_speed_that_was_not_stated_is_that_of_the_angle(recordings):
-    found = usable(_without(recordings[1], speed=None), RIG)
-    assert found.condition.speed == pytest.approx(2.0, rel=0.02)
-
-
-def test_an_interference_may_be_left_out_where_the_rig_has_one(recordings):
-    silent = _without(recordings[0], interference=None)
-    assert usable(silent, RIG).condition.interference == 0.279e-3
-    several = replace(RIG, fits=(*RIG.fits, replace(RIG.fits[0], interference=0.381e-3)))
-    with pytest.raises(ParameterError, match="interference_mm"):
-        usable(silent, several)
-
-
 def test_an_interference_that_the_rig_file_does_not_reach_is_refused(recordings):
     with pytest.raises(ParameterError, match=r"interference_mm = 0\.381.*0\.279"):
         usable(_without(recordings[0], interference=0.381e-3), RIG)
@@ -188,24 +142,6 @@ def test_recordings_of_several_rates_are_answered(recordings, tmp_path, capsys):
     code, out, _ = _answer(capsys, data, "--rig", rig, "--quick")
     assert code == 0
     assert json.loads(out)["gap"] > 0
-
-
-def test_an_out_that_is_a_file_is_refused(recordings, tmp_path, capsys):
-    data, rig = write_case(tmp_path, recordings)
-    code, line = _refused(capsys, data, "--rig", rig, "--out", rig)
-    assert code == 2
-    assert "--out" in line
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [("name = [", "rig.toml"), (RIG_FILE.replace("effects = []", 'effects = ["ghost"]'), "ghost")],
-)
-def test_a_rig_file_that_cannot_be_used_is_named(recordings, tmp_path, capsys, text, said):
-    data, rig = write_case(tmp_path, recordings, text)
-    code, line = _refused(capsys, data, "--rig", rig, "--quick")
-    assert code == 2
-    assert said in line
 
 
 def test_a_file_of_effects_that_cannot_be_used_is_named(recordings, tmp_path, capsys):

@@ -45,11 +45,6 @@ def test_what_the_simulation_has_as_well_is_no_overload(plain):
     assert flat_channels(cut, lambda one: one) == ()
 
 
-def test_two_recordings_are_too_few(plain):
-    cut = [_cut(one, "pressure", 0.3) for one in plain[:2]]
-    assert flat_channels(cut, lambda one: plain[cut.index(one)]) == ()
-
-
 @settings(max_examples=30)
 @given(st.floats(20.0, 3000.0), st.floats(0.0, 1.0), st.integers(0, 99))
 def test_no_tone_in_noise_passes_its_peak_slower_than_a_parabola(frequency, noise, seed):
@@ -58,11 +53,6 @@ def test_no_tone_in_noise_passes_its_peak_slower_than_a_parabola(frequency, nois
     tone = np.sin(2 * np.pi * frequency * time + rng.uniform(0.0, 6.0))
     ratios = pile_ups(tone + noise * rng.standard_normal(time.size))
     assert ratios.min(axis=0).max() < 3.0
-
-
-def test_a_coarse_converter_piles_nothing_up():
-    time = np.arange(12_000) / 30e3
-    assert not pile_ups(np.round(10.0 * np.sin(2 * np.pi * 97.0 * time)) / 10.0).any()
 
 
 def test_what_differs_in_an_overloaded_channel_is_the_sensors():

@@ -17,13 +17,11 @@ from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import base_name, changed_rig_text, load_material_rig, load_rig
 from noise.cli import main
-from noise.diagnosis.case import Case
-from noise.diagnosis.diagnose import case_remarks, diagnose
+from noise.diagnosis.diagnose import diagnose
 from noise.diagnosis.improved_file import check_base, improved_text
 from noise.diagnosis.outcome import Improvement
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
 from noise.screening.design import load_design
-from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it
 from tests.helpers.small_rigs import RIG, RIG_FILE, at, run, write_case
 
@@ -98,17 +96,6 @@ def test_the_page_names_the_improved_rig_and_what_to_call_next(improved):
     assert "bushing-noise screen" in page
 
 
-def test_an_older_improved_rig_does_not_stay_where_there_is_none(weak, tmp_path, capsys):
-    data, rig = write_case(tmp_path, weak)
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "improved.toml").write_text('base = "PDMS"')
-    assert main(["diagnose", str(data), "--rig", str(rig), "--out", str(out), "--quick"]) == 0
-    assert not (out / "improved.toml").exists()
-    assert "improved.toml" not in capsys.readouterr().out
-    assert json.loads((out / "diagnosis.json").read_text())["improved"] is None
-
-
 def test_a_rig_is_not_written_over_itself_or_its_base(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
@@ -179,28 +166,6 @@ def test_an_improved_rig_file_reads_as_the_rig_it_was_written_of(
     assert load_rig(path) == made
 
 
-@settings(max_examples=25)
-@given(AMOUNTS, AMOUNTS)
-def test_a_change_and_a_recalibration_multiply(change, factor):
-    rig = load_material_rig("fluorocarbon")
-    asked = {"damping": f"x{change:.6g}", "elastomer_stiffness_Nm_rad": 700.0}
-    factors = {"damping": factor, "elastomer_stiffness": factor, "elastomer_inertia": factor}
-    one_by_one = changed_rig(
-        changed_rig(rig, asked, "rig"), {k: f"x{v:.9g}" for k, v in factors.items()}, "rig"
-    )
-    at_once = changed_rig(rig, multiplied(rig, asked, factors), "rig")
-    for one, other in zip(one_by_one.fits, at_once.fits, strict=True):
-        assert other.elastomer_stiffness == pytest.approx(one.elastomer_stiffness, rel=1e-5)
-        assert other.damping == pytest.approx(one.damping, rel=1e-5)
-    assert at_once.elastomer_inertia == pytest.approx(one_by_one.elastomer_inertia, rel=1e-5)
-
-
-def test_changes_of_effects_are_not_made_twice():
-    rig = load_material_rig("fluorocarbon")
-    assert rig.effects[0].name == "slip_pulse"
-    assert multiplied(rig, {"slip_pulse.amplitude": "x2", "damping": "x2"}, {}) == {"damping": "x2"}
-
-
 def test_a_base_is_named_from_where_the_file_lies(tmp_path):
     (tmp_path / "PDMS").write_text('name = "a file like a material"')
     assert base_name(tmp_path / "PDMS", tmp_path) == "./PDMS"
@@ -219,11 +184,3 @@ def test_effects_of_the_users_own_are_said_to_need_their_file():
     rig = replace(load_material_rig("PDMS"), effects=(LawSpec("rectifier", {"share": 0.8}),))
     found = Improvement(rig, {}, rig.effects, {}, (), ("a",), ("b",), 3.0, 1.0)
     assert "--effects FILE.py" in improved_text(found, "PDMS")
-
-
-def test_recordings_beyond_what_a_rig_was_fitted_to_are_remarked_once(weak):
-    rig = replace(RIG, fastest_fitted=2.0)
-    case = Case(rig, tuple("abcd"), tuple(weak))
-    found = case_remarks(case, EFFECTS)
-    assert len(found) == 1
-    assert "above 2 rad/s, the highest speed" in found[0]

@@ -12,7 +12,7 @@ from models.recording import Channel, Recording
 from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats, perturb_rig
+from noise.diagnosis.simulated.repeats import nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import (
     TransferFunctionCache,
     predict,
@@ -87,13 +87,3 @@ def test_a_quiet_steady_rig_is_quiet_from_start_to_end_of_a_recording():
     template = Recording(np.zeros((1, 15_000)), 30e3, (Channel("torque"),), at)
     (run,) = nominal_repeats(template, rig, TransferFunctionCache(rig), (1,))
     assert np.abs(run["acceleration"]).max() < 0.5
-
-
-def test_critical_and_kinetic_torque_scatter_each_on_its_own():
-    rng = np.random.default_rng(1)
-    fits = [perturb_rig(RIG, Scatter(), rng).fit(0.279e-3) for _ in range(2000)]
-    kinetic = np.log([fit.kinetic_torque for fit in fits])
-    excess = np.log([fit.critical_torque - fit.kinetic_torque for fit in fits])
-    assert kinetic.std() == pytest.approx(0.02, rel=0.1)
-    assert excess.std() == pytest.approx(0.02, rel=0.1)
-    assert abs(np.corrcoef(kinetic, excess)[0, 1]) < 0.1

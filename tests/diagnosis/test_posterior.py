@@ -37,11 +37,6 @@ def posterior():
     return made_posterior()
 
 
-def test_causes_are_the_effects_and_three_more():
-    assert set(CAUSES) == set(EFFECTS) | {"parameters", "unknown", "none"}
-    assert CAUSES[-1] == "none"
-
-
 @pytest.mark.parametrize("cause", [*MOVES, "parameters", "unknown", "none"])
 def test_a_cause_that_was_learned_is_the_most_probable(posterior, cause):
     rng = np.random.default_rng(123)
@@ -50,11 +45,6 @@ def test_a_cause_that_was_learned_is_the_most_probable(posterior, cause):
         assert set(p) == set(CAUSES)
         assert all(0.0 <= x <= 1.0 for x in p.values())
         assert max(p, key=p.get) == cause
-
-
-def test_causes_that_are_not_at_work_are_improbable(posterior):
-    p = posterior.probabilities(made_table(np.random.default_rng(5), "clipping"))
-    assert max(p[name] for name in EFFECTS if name != "clipping") < 0.15
 
 
 def test_at_most_few_cases_without_a_cause_raise_the_alarm(posterior):
@@ -159,30 +149,6 @@ def test_fewer_recordings_are_some_of_those_that_there_are():
     assert sizes == {3}  # of four, one is left out
     three = replace(case, table=made_table(rng, n=3))
     assert with_fewer(three, rng) is three
-
-
-def test_fewer_channels_leave_the_numbers_that_a_recording_without_them_has():
-    from noise.diagnosis.evidence.summary import case_table
-    from tests.helpers.small_rigs import RIG, at, only, run
-
-    recording = run(at(2.0))
-    whole = Known(case_table([recording], RIG), Truth("none"))
-    for kinds in (("pressure",), ("torque",), ("torque", "angle"), ("acceleration", "pressure")):
-        table = with_channels(whole, kinds).table
-        learned = {n for n, x in zip(table.names, table.measured[0], strict=True) if np.isfinite(x)}
-        met = {
-            n for n, x in zip(*_numbers(only(recording, *kinds)), strict=True) if np.isfinite(x)
-        }  # fmt: skip
-        assert learned ^ met <= {n for n in learned | met if n.startswith("contact")}
-
-
-def _numbers(recording):
-    from noise.diagnosis.evidence.summary import summary
-    from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
-    from tests.helpers.small_rigs import RIG
-
-    found = summary(recording, RIG, torque_transfer_functions(RIG, 0.279e-3, 2214.0))
-    return found.keys(), found.values()
 
 
 def _p(**given):

@@ -14,7 +14,6 @@ from noise.diagnosis.prepare import (
     at_measured_speeds,
     converter_step,
     estimated_noise,
-    prepared,
     settled_parts,
     shortest,
     start_of,
@@ -91,11 +90,6 @@ def test_a_speed_that_swings_all_the_time_stays_to_the_bit(depth, frequency, pha
     assert not refused
 
 
-def test_a_dip_in_the_middle_is_no_start():
-    dip = 1.0 - 0.3 * np.exp(-(((TIME - 0.3) / 0.02) ** 2))
-    assert start_of(turning(dip)) == 0.0
-
-
 def test_a_torque_that_rises_from_zero_tells_a_start_without_an_angle():
     torque = stick_slip(60.0) * np.minimum(TIME / 0.02, 1.0)
     assert 0.01 < start_of(through(torque, noise=0.005)) < 0.05
@@ -149,11 +143,6 @@ def test_repeats_get_the_mean_speed_of_their_angles_where_the_stated_one_is_off(
         assert abs(off) < 0.007
 
 
-def test_a_speed_that_is_quite_another_stays_to_be_complained_of():
-    run = turning(np.full(24_000, 3.0))
-    assert at_measured_speeds([run]) == ((run,), ())
-
-
 @given(
     bits=st.integers(12, 16),
     span=st.floats(5.0, 200.0),
@@ -165,11 +154,6 @@ def test_a_converters_step_is_found_to_a_ten_thousandth(bits, span, noise, seed)
     sound = 0.4 * span * np.sin(2.0 * np.pi * 137.0 * TIME)
     runs = [through(sound, noise=noise * step, step=step, seed=seed + i) for i in range(2)]
     assert converter_step(runs, "torque") == pytest.approx(step, rel=1e-4)
-
-
-def test_samples_without_a_converter_have_no_step():
-    assert converter_step([through(stick_slip(60.0), noise=0.005)], "torque") == 0.0
-    assert converter_step([through(np.full(24_000, 3.0))], "torque") == 0.0
 
 
 @given(
@@ -208,13 +192,6 @@ def test_what_a_rig_file_states_of_a_sensor_stays():
     seen, notes = with_estimated_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
     assert seen.sensors.of("torque") == stated
     assert notes == ()
-
-
-def test_a_settled_case_with_good_sensors_is_itself():
-    even = turning(np.ones(24_000))
-    _, (ready,), _, left_out = prepared(RIG, [even])
-    assert ready.samples is even.samples
-    assert left_out == {}
 
 
 @given(size=st.floats(0.0, 1.0), slips=st.floats(40.0, 150.0))

@@ -10,12 +10,9 @@ from models.recording import Channel, Recording
 from models.rig import LawSpec
 from models.rig_file import load_material_rig, load_rig
 from models.sensors import Sensor, Sensors
-from models.transfer_functions.measured import MeasuredResponse
-from models.transfer_functions.transfer_function import TransferFunction
 from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
-from noise.diagnosis.evidence.summary import lacking_coherence
 from noise.diagnosis.first_answer import unlearned_sensors
 from noise.diagnosis.gap import NAMES, Gap
 from noise.diagnosis.prepare import estimated_noise, with_estimated_sensors
@@ -165,14 +162,3 @@ def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
     assert not needs_explaining(0.001, 0.05, small, chance=0.4)
     assert needs_explaining(0.001, 0.05, small, chance=0.003)
     assert needs_explaining(0.001, 0.05, large, chance=0.4)
-
-
-def test_what_the_coherence_of_a_hammer_test_lacks_is_measured():
-    frequencies = np.linspace(0.0, 3000.0, 301)
-
-    def measured(coherence):
-        response = TransferFunction(frequencies, np.ones(301, complex), np.full(301, coherence))
-        return replace(RIG, measured=(MeasuredResponse(2214.0, torque_to_acceleration=response),))
-
-    recording = run(at(2.0))
-    assert lacking_coherence(measured(0.9), [recording]) == pytest.approx(0.1)
