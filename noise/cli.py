@@ -193,9 +193,8 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, line in COMMANDS.items():
         command = commands.add_parser(name, help=line, allow_abbrev=False)
         if name in arguments:
-            texts = help_of(name)
-            command.description, command.epilog = texts.description, texts.epilog or None
-            add_options(command, [*load_command(name).OPTIONS, *COMMON], texts.options)
+            command.description, command.epilog, texts = help_of(name)
+            add_options(command, [*load_command(name).OPTIONS, *COMMON], texts)
     return parser
 
 

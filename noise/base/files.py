@@ -5,23 +5,17 @@ So every output is written to a temporary file in the same folder and then renam
 name starts with a dot, which folder searches skip, and has the suffix of the target, because many
 writers choose their format by it. A target that cannot be written is refused before the work.
 
-Temporary files of killed processes are removed by the next process that writes into the folder a
-day later. The operating system releases locks when a process ends.
+The operating system releases locks when a process ends.
 """
 
 from __future__ import annotations
 
-import time
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from functools import cache
 from pathlib import Path
 
 from models.errors import ParameterError
-
-_STALE = 86_400.0
-"""Age from which on a temporary file is abandoned [s]."""
 
 
 @contextmanager
@@ -61,7 +55,6 @@ def atomic(target: str | Path) -> Iterator[Path]:
             raise ParameterError(f"{target}: is a folder; name a file to write")
         _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
-        _remove_stale(place.parent)
         yield temporary
         temporary.replace(place)
     except OSError as error:
@@ -130,15 +123,6 @@ def _link_target(target: Path, option: str = "") -> Path:
     except (OSError, RuntimeError):
         label = f"{option} {target}".lstrip()
         raise ParameterError(f"{label}: is a link that leads nowhere") from None
-
-
-@cache
-def _remove_stale(folder: Path) -> None:
-    """Remove the temporary files that killed processes left in a folder."""
-    with suppress(OSError):  # a folder may be writable but not readable
-        for path in folder.glob(f".{'[0-9a-f]' * 32}.part*"):  # names that `atomic` gives
-            if time.time() - path.stat().st_mtime > _STALE:
-                path.unlink()
 
 
 @contextmanager

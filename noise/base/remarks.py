@@ -177,31 +177,6 @@ def effect_remarks(rig: Rig, library: Mapping[str, Effect]) -> list[str]:
     ]
 
 
-def sensor_remarks(sensors: Sensors, rate: float) -> list[str]:
-    """Return remarks on sensor properties that a simulation at a sampling rate [Hz] leaves out.
-
-    Examples
-    --------
-    >>> from models.sensors import Sensor, Sensors
-    >>> sensor_remarks(Sensors({"torque": Sensor(antialias=10e3)}), 30e3)
-    []
-    """
-    lines = []
-    if sensors.noise_from_recordings:
-        lines.append(
-            'noise = "from recordings" needs recordings to compare with; here the noise of good '
-            "sensors is used"
-        )
-    corners = (sensor.antialias for sensor in sensors.by_kind.values())
-    high = sorted({corner for corner in corners if corner is not None and corner > 0.5 * rate})
-    if high:
-        lines.append(
-            f"antialias_hz = {high[0]:g} lies above half the sampling rate, {0.5 * rate:g} Hz; "
-            "the aliasing that such a filter allows is not simulated"
-        )
-    return lines
-
-
 def clipping_remarks(recording: Recording, sensors: Sensors) -> list[str]:
     """Return remarks on channels that reach the limits of their sensors.
 

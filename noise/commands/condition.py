@@ -22,7 +22,6 @@ from noise.base.remarks import (
     NEVER_SLIPS,
     clipping_remarks,
     effect_remarks,
-    sensor_remarks,
     temperature_remark,
     use_remarks,
 )
@@ -168,7 +167,7 @@ def run_arguments(
         "seconds": seconds,
         "library": library,
     }
-    notes = (*_remarks(options, arguments), *sensor_remarks(rig.sensors, rate))
+    notes = _remarks(options, arguments)
     stiffness = arguments["support_stiffness"]
     support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
     say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
@@ -237,6 +236,11 @@ def _remarks(options: Namespace, arguments: Mapping[str, Any]) -> tuple[str, ...
     )
     remarks += effect_remarks(rig, arguments["library"])
     remarks.append(temperature_remark(rig, options.temperature))
+    if rig.sensors.noise_from_recordings:
+        remarks.append(
+            'noise = "from recordings" needs recordings to compare with; here the noise of good '
+            "sensors is used"
+        )
     return tuple(text for text in remarks if text)
 
 

@@ -184,16 +184,6 @@ class Option:
         return self.name.partition(" ")[0].removeprefix("--").replace("-", "_")
 
 
-class OneOf(tuple[Option, ...]):
-    """Options that exclude each other."""
-
-    __slots__ = ()
-
-    def __new__(cls, *rows: Option) -> OneOf:
-        """Create the group from its options."""
-        return super().__new__(cls, rows)
-
-
 class Group(NamedTuple):
     """Options under their own title."""
 
@@ -202,29 +192,22 @@ class Group(NamedTuple):
     rows: Sequence[Option]
 
 
-Row = Option | OneOf | Group
+Row = Option | Group | tuple[Option, ...]
+"""Option, options under a title, or options that exclude each other."""
 
 
-class Help(NamedTuple):
-    """Help texts of a command: description, examples, and options by name."""
-
-    description: str
-    epilog: str
-    options: Mapping[str, str]
-
-
-def help_of(command: str) -> Help:
-    """Read the help texts of a command.
+def help_of(command: str) -> tuple[str, str, Mapping[str, str]]:
+    """Read the help texts of a command: description, examples, and options by name.
 
     Examples
     --------
-    >>> help_of("render").options["--gap"]
+    >>> help_of("render")[2]["--gap"]
     'silence between two inputs in s'
     """
     texts = packaged_toml("noise.commands", "help.toml")
     own = texts[command]
     options = texts["shared"]["options"] | own.get("options", {})
-    return Help(own["description"], own.get("epilog", ""), options)
+    return own["description"], own.get("epilog", ""), options
 
 
 def add_options(
@@ -236,7 +219,7 @@ def add_options(
     ----------
     parser : argparse.ArgumentParser
         Parser, or a group of one.
-    rows : iterable of Option, OneOf or Group
+    rows : iterable of `Row`
     texts : mapping of str to str, optional
         Help texts by the name of the option.
 
@@ -250,7 +233,7 @@ def add_options(
     for row in rows:
         if isinstance(row, Group):
             add_options(parser.add_argument_group(row.title, row.text), row.rows, texts)
-        elif isinstance(row, OneOf):
+        elif isinstance(row, tuple):
             add_options(parser.add_mutually_exclusive_group(), row, texts)
         else:
             _add(parser, row, texts or {})
@@ -261,7 +244,7 @@ def option_names(rows: Iterable[Row]) -> Iterator[str]:
 
     Examples
     --------
-    >>> list(option_names([Option("--gap S"), OneOf(Option("--ab"), Option("--set"))]))
+    >>> list(option_names([Option("--gap S"), (Option("--ab"), Option("--set"))]))
     ['--gap', '--ab', '--set']
     """
     for row in rows:
@@ -296,7 +279,7 @@ def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, st
 
 COMMON = (
     Option("--seed N", whole_number(0), 0),
-    OneOf(
+    (
         Option("--quiet"),
         Option("--verbose"),
     ),
@@ -307,7 +290,7 @@ CHANGE = Option("--change NAME=AMOUNT", change, repeated=True)
 """``--change`` of all commands that take a rig."""
 
 CALIBRATION = (
-    OneOf(
+    (
         Option("--full-scale PA", number(above=0.0)),
         Option("--calibrator TONE", Path),
     ),

@@ -23,7 +23,6 @@ from noise.base.progress import counted, note, report, say, track
 from noise.commands.condition import CONDITION, run_arguments, stated_options, with_notes
 from noise.commands.options import (
     CALIBRATION,
-    OneOf,
     Option,
     add_options,
     band,
@@ -59,7 +58,7 @@ OPTIONS = (
     Option("--out AUDIO.wav|FOLDER", Path, required=True),
     Option("--ab"),
     Option("--gap S", number(least=0.0, most=60.0), 0.5),
-    OneOf(
+    (
         Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)),
         Option("--match-loudness"),
     ),

@@ -15,7 +15,6 @@ from noise.commands.options import (
     CHANGE,
     MOST_WORKERS,
     Group,
-    OneOf,
     Option,
     changed,
     check_folder,
@@ -45,7 +44,7 @@ OPTIONS = (
             Option("--environment NAME", str, "dry"),
         ),
     ),
-    OneOf(
+    (
         Option("--tolerances"),
         Option("--no-tolerances"),
     ),

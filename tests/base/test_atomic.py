@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import errno
 import os
-import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -29,17 +28,6 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path, interruption):
         write_half_and_raise(target, interruption())
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
-
-
-def test_what_a_killed_program_left_behind_goes_a_day_later(tmp_path):
-    names = [f".{'a' * 32}.part.csv", f".{'b' * 32}.part.csv", ".theirs.part.csv"]
-    for name, age in zip(names, (90_000, 80_000, 90_000), strict=True):
-        left = tmp_path / name
-        left.write_text("half")
-        os.utime(left, (time.time() - age,) * 2)
-    with atomic(tmp_path / "table.csv") as path:
-        path.write_text("whole")
-    assert sorted(one.name for one in tmp_path.iterdir()) == [*names[1:], "table.csv"]
 
 
 def test_a_full_disk_is_an_error_in_one_line(tmp_path):

@@ -56,9 +56,9 @@ def test_a_reader_that_goes_away_is_no_error():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_is_explained_and_every_command_takes_a_seed(name):
     parser = argparse.ArgumentParser(prog=name)
-    texts, rows = help_of(name), [*load_command(name).OPTIONS, *COMMON]
-    add_options(parser, rows, texts.options)
-    assert texts.description
+    (description, _, texts), rows = help_of(name), [*load_command(name).OPTIONS, *COMMON]
+    add_options(parser, rows, texts)
+    assert description
     own = tomllib.loads(HELP.read_text(encoding="utf-8"))[name].get("options", {})
     assert set(own) <= set(option_names(rows))
     assert parser.get_default("seed") == 0
