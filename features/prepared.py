@@ -101,9 +101,6 @@ class Prepared:
         [unit]
     rms : float
         Rms value about the mean [unit]; 0 for a signal that is constant to rounding.
-    stick_rate : float
-        Rate at which the torque rises in true stick [N m/s]: k_EFF times the shaft's speed (thesis,
-        (5.1)); NaN if unknown.
     """
 
     samples: NDArray[np.float64]
@@ -112,7 +109,6 @@ class Prepared:
     calibrated: bool
     mean: float
     rms: float
-    stick_rate: float = math.nan
 
     @property
     def low(self) -> float:
@@ -304,11 +300,6 @@ class Prepared:
             return math.nan
         return self._share_db(self.spectrum, THESIS_BANDS[1][0], self.limit)
 
-    @property
-    def slope_ratio(self) -> float:
-        """Slope of the rising torque over that in true stick [-]."""
-        return self.slips.stick_slope / self.stick_rate
-
     @cached_property
     def top_bands(self) -> tuple[TopBand, ...]:
         """Level and kurtosis of `TOP_BANDS`."""
@@ -329,7 +320,6 @@ def prepare(
     kind: str,
     *,
     calibrated: bool = True,
-    stick_rate: float = math.nan,
     first: int = 0,
 ) -> Prepared:
     """Check a signal and prepare it for features.
@@ -344,8 +334,6 @@ def prepare(
         Kind of channel.
     calibrated : bool
         Whether the samples are in physical units.
-    stick_rate : float
-        Rate of a torque in true stick [N m/s].
     first : int
         Index of the first sample in its recording, for messages.
 
@@ -369,4 +357,4 @@ def prepare(
     scale = largest if largest > 0.0 else 1.0
     rms = scale * math.sqrt(float(np.mean(((x - mean) / scale) ** 2)))
     rms = rms if rms > NOTHING * largest else 0.0
-    return Prepared(x, rate, kind, calibrated, mean, rms, stick_rate)
+    return Prepared(x, rate, kind, calibrated, mean, rms)

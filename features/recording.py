@@ -2,10 +2,6 @@
 
 A recording of 2^21 samples or more (44 s at 48 kHz) is analysed in equal pieces of at most 2^19,
 whose features are combined.
-
-A sticking contact transfers the whole motion of the shaft to the springs, so the torque rises at
-k_EFF times the speed (thesis, 5.1); in sliding it rises slower. With the clamp bolted down a
-simulated sticking contact reaches this rate within 1 %, on beams within some 10 % at 1 rad/s.
 """
 
 from __future__ import annotations
@@ -14,18 +10,15 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from features.prepared import prepare
 from features.table import KINDS, Feature, features_of, pooled_levels
-from models.blocks import Read, RecordingBlocks, in_pieces, reader_of
+from models.blocks import Read, RecordingBlocks, reader_of
 from models.errors import ParameterError
 from models.recording import Recording
-from models.rig import Rig, effective_stiffness
-from models.rig_file import load_material_rig
 
 LONG, PIECE = 1 << 21, 1 << 19
 """Samples from which a channel is analysed in pieces (44 s at 48 kHz), and the largest piece."""
@@ -37,7 +30,6 @@ def feature_vector(
     kind: str,
     *,
     calibrated: bool = True,
-    stick_rate: float = math.nan,
 ) -> dict[str, float]:
     """Return all features of one channel.
 
@@ -52,8 +44,6 @@ def feature_vector(
     kind : {"pressure", "acceleration", "torque"}
     calibrated : bool
         Whether the samples are in physical units; levels are NaN otherwise.
-    stick_rate : float
-        Rate of a torque in true stick [N m/s], if known: k_EFF times the shaft's speed.
 
     Returns
     -------
@@ -75,7 +65,7 @@ def feature_vector(
     (1046, 1.0, 1.0)
     """
     features = features_of(kind)
-    prepared = prepare(signal, rate, kind, calibrated=calibrated, stick_rate=stick_rate)
+    prepared = prepare(signal, rate, kind, calibrated=calibrated)
     return {feature.name: feature(prepared) for feature in features}
 
 
@@ -130,11 +120,9 @@ def recording_features(
             values |= dict.fromkeys(by_name, math.nan)
             continue
         try:
-            stick_rate = stick_rate_of(recording) if kind == "torque" else math.nan
             of_channel = _in_pieces(
                 reader_of(recording, row), recording.n_samples, [*by_name.values()],
                 rate=recording.rate, kind=kind, calibrated=recording.calibrated,
-                stick_rate=stick_rate,
             )  # fmt: skip
             values |= zip(by_name, of_channel, strict=True)
         except ParameterError as error:
@@ -153,14 +141,13 @@ def _in_pieces(
     rate: float,
     kind: str,
     calibrated: bool,
-    stick_rate: float,
 ) -> list[float]:
     """Return the features of a channel; those of a long one combine its pieces."""
     edges = np.linspace(0, n_samples, piece_count(n_samples) + 1).astype(int).tolist()
     values, power, moments = [], [], []
     for first, last in itertools.pairwise(edges):
         x = read(first, last)
-        p = prepare(x, rate, kind, calibrated=calibrated, stick_rate=stick_rate, first=first)
+        p = prepare(x, rate, kind, calibrated=calibrated, first=first)
         values.append([feature(p) for feature in features])
         power.append(0.0 if p.silent else p.rms**2 * p.in_band_power)
         moments.append((p.mean, p.rms))
@@ -192,87 +179,3 @@ def _pooled(
     elif power[defined].any():
         return pooled(values[defined], power[defined])
     return pooled(values[defined], np.ones(int(defined.sum())))
-
-
-_ANGLE_BLOCK = 0.02
-"""Length of the blocks of angle whose means give the speed [s]."""
-
-_LEAST_ANGLE_BLOCKS = 3
-
-_MOST_SPEEDS = 1 << 21
-"""Most samples for the median of a speed; longer ones are thinned."""
-
-_AT_ONCE = 1 << 16
-"""Samples read at a time."""
-
-
-def stick_rate_of(recording: Recording | RecordingBlocks) -> float:
-    """Return the rate of the torque in true stick, k_EFF times the shaft's speed (thesis, (5.1)).
-
-    Parameters
-    ----------
-    recording : Recording or RecordingBlocks
-        Its condition states interference, support and material, whose shipped rig has the
-        elastomer's stiffness.
-
-    Returns
-    -------
-    float
-        Magnitude [N m/s]; NaN if speed, interference, support or material is unknown.
-
-    Examples
-    --------
-    >>> from models.condition import Condition
-    >>> from models.recording import Channel, Recording
-    >>> condition = Condition(5.0, 0.279e-3, 2214.0, "fluorocarbon-thesis")
-    >>> run = Recording(np.zeros((1, 480)), 48e3, (Channel("torque"),), condition)
-    >>> round(stick_rate_of(run))
-    2557
-    """
-    condition = recording.condition
-    if condition.interference is None or condition.support_stiffness is None:
-        return math.nan
-    rig, speed = _shipped(condition.material), _speed(recording)
-    if rig is None or speed is None or speed == 0.0:
-        return math.nan
-    fit = rig.fit(condition.interference)
-    return effective_stiffness(fit, condition.support_stiffness) * speed
-
-
-def _speed(recording: Recording | RecordingBlocks) -> float | None:
-    """Return the magnitude of the shaft's speed: median of its channels, else the condition's.
-
-    Labels average the speed over a segment, identification and diagnosis need its course: they
-    compute it from the same channels in other ways, whose bits the shipped models learned.
-    """
-    speed, angle = recording.first("speed"), recording.first("angle")
-    n = recording.n_samples
-    if recording.calibrated and speed is not None:
-        every = 1 + n // _MOST_SPEEDS
-        pieces = in_pieces(reader_of(recording, speed), n, every * _AT_ONCE)
-        run = [np.abs(piece[::every]) for piece in pieces]
-        return float(np.median(np.concatenate(run)))
-    block = max(1, round(_ANGLE_BLOCK * recording.rate))
-    if recording.calibrated and angle is not None:
-        n_blocks = n // block
-        if n_blocks >= _LEAST_ANGLE_BLOCKS:
-            # Means of blocks first, since differences of single samples are dominated by noise.
-            read = reader_of(recording, angle)
-            means = np.concatenate(
-                [
-                    piece[: piece.size // block * block].reshape(-1, block).mean(axis=1)
-                    for piece in in_pieces(read, n, max(1, _AT_ONCE // block) * block)
-                ]
-            )
-            return float(np.median(np.abs(np.diff(means)))) * recording.rate / block
-    set_speed = recording.condition.speed
-    return None if set_speed is None else abs(set_speed)
-
-
-@lru_cache(maxsize=16)
-def _shipped(material: str | None) -> Rig | None:
-    """Return the shipped rig with a material, or None for an unknown one."""
-    try:
-        return None if material is None else load_material_rig(material)
-    except ParameterError:
-        return None

@@ -31,7 +31,7 @@ def test_every_feature_says_what_it_is(feature):
     assert set(feature.kinds) <= set(KINDS)
     assert feature.calibrated == (
         feature.unit in ("N m", "N m/s")
-        or feature.name in ("level", "level_a", "slope_ratio")
+        or feature.name in ("level", "level_a")
         or feature.name.startswith("third_octave_")
     )
 

@@ -191,7 +191,8 @@ def _store(sounds: RealSounds, path: Path) -> None:
 
 
 def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> RealSounds:
-    if tuple(header["feature_names"]) != FEATURE_NAMES:
+    stored = [name for name in header["feature_names"] if name.startswith("pressure_")]
+    if stored != [FEATURE_NAMES[i] for i in _COLUMNS]:
         raise ValueError("its features are others")
     x = np.full((len(arrays["features"]), len(FEATURE_NAMES)), np.nan, dtype=np.float32)
     x[:, _COLUMNS] = arrays["features"]
