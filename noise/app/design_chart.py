@@ -75,14 +75,14 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
         done += points
         report_share(done / total)
 
-    with batch_evaluator(workers=1, advance=advance) as evaluate:
+    evaluate = batch_evaluator(workers=1, advance=advance)
 
-        def counted(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
-            nonlocal total
-            total = max(total, done + len(points))
-            return evaluate(rig, points)
+    def counted(rig: Rig, points: Sequence[Condition]) -> list[PointResult]:
+        nonlocal total
+        total = max(total, done + len(points))
+        return evaluate(rig, points)
 
-        design_map = map_design(rig, grid, counted, design="design", most=simulations)
+    design_map = map_design(rig, grid, counted, design="design", most=simulations)
     labels = design_map.label[0, 0]
     across = axis_of(grid.speed)
     up = axis_of([round(1e3 * fit, 6) for fit in grid.interference], named_over=_HEIGHT)

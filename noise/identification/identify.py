@@ -120,7 +120,6 @@ def identify_rig(
         notes=(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
-            *_moved_inertias(beforehand, rig),
         ),
         refused=measurements.refused,
         held_out=held_out,
@@ -218,13 +217,7 @@ def identification_json(data: Path, rig: Path) -> dict[str, Any]:
 def _notes(
     candidate: Candidate, scores: Sequence[LawScore], held_out: Sequence[str]
 ) -> tuple[str, ...]:
-    notes = [
-        "intervals are of the rig and hold if its law of friction is much like the one that was "
-        "chosen. That single recordings scatter about it by 2 to 3 % is assumed, so the intervals "
-        "are wide where recordings agree better than that",
-        "critical_torque and kinetic_torque are levels of these recordings; the rig file has the "
-        "torques of the law that fits best, law_critical_torque and law_kinetic_torque",
-    ]
+    notes = []
     if not held_out:
         notes.append(
             "fewer than three conditions: the laws are judged by the recordings they were fitted "
@@ -248,19 +241,6 @@ def _notes(
             "diagnose finds which effect is missing"
         )
     return tuple(notes)
-
-
-def _moved_inertias(beforehand: Beforehand, rig: Rig) -> list[str]:
-    """Return a note on how far the fit moved stated inertias."""
-    if not beforehand.inertias_stated:
-        return []
-    pairs = [(beforehand.rig.elastomer_inertia, rig.elastomer_inertia, "elastomer_inertia_kgm2"),
-             (beforehand.rig.clamp_inertia, rig.clamp_inertia, "clamp_inertia_kgm2")]  # fmt: skip
-    moved = [f"{name} from {old:.4g} to {new:.4g}" for old, new, name in pairs]
-    return [
-        "stated inertias count as known to 2 %, so the recordings may move them: "
-        f"{' and '.join(moved)}"
-    ]
 
 
 _RIVALS = 1.2
@@ -318,7 +298,6 @@ def _assumed(
             "damping is split evenly between elastomer and beams, as the thesis does: with the "
             "clamp bolted down only the elastomer's can be told"
         )
-    assumed.append("supports are as stiff as the sidecars say")
     assumed.append(_structure(beforehand))
     if not beforehand.inertias_stated:
         assumed.append(

@@ -19,8 +19,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from functools import lru_cache
 
@@ -125,33 +124,6 @@ def swing(speed: float, frequency: float) -> Oscillation:
     return Oscillation(speed / (2.0 * math.pi * frequency), frequency)
 
 
-def evaluate_point(rig: Rig, at: Condition) -> PointResult:
-    """Simulate a point and return its regime, noise and level.
-
-    Parameters
-    ----------
-    rig : Rig
-    at : Condition
-
-    Returns
-    -------
-    PointResult
-
-    Raises
-    ------
-    ParameterError
-        If a value cannot be used.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> rig = load_material_rig("fluorocarbon")
-    >>> evaluate_point(rig, Condition(10.0, 0.279e-3, 3745.0)).label
-    'squeal'
-    """
-    return evaluate_row(rig, [at])[0]
-
-
 def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
     """Simulate points that differ in speed alone; together they take less time.
 
@@ -164,6 +136,18 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
     Returns
     -------
     list of PointResult
+
+    Raises
+    ------
+    ParameterError
+        If a value cannot be used.
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> rig = load_material_rig("fluorocarbon")
+    >>> evaluate_row(rig, [Condition(10.0, 0.279e-3, 3745.0)])[0].label
+    'squeal'
     """
     if row[0].frequency is not None:
         return [
@@ -364,11 +348,10 @@ Evaluator = Callable[[Rig, Sequence[Condition]], list[PointResult]]
 """Returns what is known of each point of a rig."""
 
 
-@contextmanager
 def batch_evaluator(
     *, workers: int = -1, advance: Callable[[int], None] = lambda _: None
-) -> Iterator[Evaluator]:
-    """Yield a function that simulates batches.
+) -> Evaluator:
+    """Return a function that simulates batches.
 
     Parameters
     ----------
@@ -377,22 +360,17 @@ def batch_evaluator(
     advance : callable
         Is called with the number of points that were simulated since.
 
-    Yields
-    ------
+    Returns
+    -------
     callable
-        From a rig and conditions to a list of `PointResult`.
-
-    Raises
-    ------
-    ParameterError
-        A condition cannot be simulated.
+        From a rig and conditions to a list of `PointResult`; raises ParameterError where one cannot
+        be simulated.
 
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> with batch_evaluator() as evaluate:
-    ...     [result] = evaluate(load_material_rig("PDMS"), [Condition(1.0, 3e-4, 2e3)])
-    >>> result.label
+    >>> evaluate = batch_evaluator()
+    >>> evaluate(load_material_rig("PDMS"), [Condition(1.0, 3e-4, 2e3)])[0].label
     'none'
     """
 
@@ -407,7 +385,7 @@ def batch_evaluator(
                 advance(len(row))
         return [results[at] for at in points]
 
-    yield evaluate
+    return evaluate
 
 
 def _rows(points: Sequence[Condition]) -> list[list[Condition]]:

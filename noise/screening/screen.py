@@ -237,31 +237,31 @@ def screen(
     work = _Work(advance, len(loaded) * len(grids), simulations or DEFAULT_SIMULATIONS)
     maps: list[DesignMap] = []
     notes: dict[tuple[str, str], list[str]] = {}
-    with batch_evaluator(workers=workers, advance=work.add) as evaluate:
-        if journal is not None:
-            evaluate = keeping(evaluate, journal)
-        for name, design in loaded.items():
-            try:
-                own = {(name, where): _remarks(design, where, grids, given) for where in names}
-                for text in dict.fromkeys(itertools.chain(*own.values())):
-                    progress(f"{name}: {text}")
-                of_design: list[DesignMap] = []
-                for (where, swinging), grid in grids.items():
-                    progress(f"mapping {name}, {where}")
-                    rig = in_environment(design.rig, environment(where))
-                    refuse_never_slipping(rig, grid)
-                    one = map_design(
-                        rig, grid, evaluate, design=name, environment=where, most=simulations
-                    )
-                    if swinging is not None and len(motions) > _ONE_SWING:
-                        degrees = math.degrees(swinging.amplitude)
-                        one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
-                    of_design.append(one)
-                    work.map_done()
-            except BushingNoiseError as error:
-                refused.append((name, str(error)))
-            else:
-                maps, notes = maps + of_design, notes | own
+    evaluate = batch_evaluator(workers=workers, advance=work.add)
+    if journal is not None:
+        evaluate = keeping(evaluate, journal)
+    for name, design in loaded.items():
+        try:
+            own = {(name, where): _remarks(design, where, grids, given) for where in names}
+            for text in dict.fromkeys(itertools.chain(*own.values())):
+                progress(f"{name}: {text}")
+            of_design: list[DesignMap] = []
+            for (where, swinging), grid in grids.items():
+                progress(f"mapping {name}, {where}")
+                rig = in_environment(design.rig, environment(where))
+                refuse_never_slipping(rig, grid)
+                one = map_design(
+                    rig, grid, evaluate, design=name, environment=where, most=simulations
+                )
+                if swinging is not None and len(motions) > _ONE_SWING:
+                    degrees = math.degrees(swinging.amplitude)
+                    one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
+                of_design.append(one)
+                work.map_done()
+        except BushingNoiseError as error:
+            refused.append((name, str(error)))
+        else:
+            maps, notes = maps + of_design, notes | own
     if not maps:
         raise ParameterError(refused[0][1])
     standings: list[Standing] = []

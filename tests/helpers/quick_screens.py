@@ -6,7 +6,7 @@ import contextlib
 
 import pytest
 
-from noise.screening.point import SILENT, PointResult
+from noise.screening.point import SILENT, PointResult, evaluate_row
 from noise.screening.screen import screen
 from sim.analysis.regime import Regime
 
@@ -33,3 +33,8 @@ def judged_by_speed(points, ends=5.0):
         else SILENT
         for at in points
     ]
+
+
+def evaluate_point(rig, at):
+    """What is known of one condition."""
+    return evaluate_row(rig, [at])[0]

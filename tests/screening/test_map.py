@@ -12,10 +12,10 @@ from noise.noise_definition import LEAST_LEVEL
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import map_design
-from noise.screening.point import batch_evaluator, evaluate_point
+from noise.screening.point import batch_evaluator
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
-from tests.helpers.quick_screens import quick_screen
+from tests.helpers.quick_screens import evaluate_point, quick_screen
 from tests.screening.long_runs import label_after
 
 SUPPORTS = (2214.0, 3745.0, math.inf)
@@ -25,8 +25,8 @@ FLUOROCARBON = load_material_rig("fluorocarbon")
 
 def mapped(material, use, **more):
     design = Design(material, load_material_rig(material))
-    with batch_evaluator() as judged:
-        return map_design(design.rig, shared_grid([design], use), judged, design=material, **more)
+    grid = shared_grid([design], use)
+    return map_design(design.rig, grid, batch_evaluator(), design=material, **more)
 
 
 def test_pdms_is_silent_everywhere():

@@ -1,7 +1,6 @@
 """Designs of one screen: the same points for each, and what stands in where data are missing."""
 
 import math
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -13,12 +12,11 @@ from models.rig_file import load_material_rig
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import known_rows
-from noise.screening.point import evaluate_point
 from noise.screening.screen import screen
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
-from tests.helpers.quick_screens import judged_by_speed, quick_screen
+from tests.helpers.quick_screens import evaluate_point, judged_by_speed, quick_screen
 
 THESIS = load_material_rig("fluorocarbon-thesis")
 FLUOROCARBON = load_material_rig("fluorocarbon")
@@ -62,11 +60,8 @@ def bushings(draw):
 def quick(monkeypatch):
     """A screen that simulates nothing."""
 
-    @contextmanager
-    def evaluator(**_):
-        yield lambda _, points: judged_by_speed(points)
-
-    monkeypatch.setattr("noise.screening.screen.batch_evaluator", evaluator)
+    quickly = lambda **_: lambda _, points: judged_by_speed(points)  # noqa: E731
+    monkeypatch.setattr("noise.screening.screen.batch_evaluator", quickly)
     monkeypatch.setattr("noise.screening.screen.advise", lambda *_, **__: ())
     monkeypatch.setattr("noise.screening.screen.refuse_never_slipping", lambda *_: None)
 

@@ -57,8 +57,7 @@ def mapped(rig, at):
     speeds = tuple(STEP * n for n in range(2, 105))
     one = (at.interference,), (at.support_stiffness,), (at.temperature,)
     grid = Grid(speeds, (), *one, (speeds[0], speeds[-1]))
-    with batch_evaluator(workers=1) as evaluate:
-        found = map_design(rig, grid, evaluate, design="drawn")
+    found = map_design(rig, grid, batch_evaluator(workers=1), design="drawn")
     noisy = np.flatnonzero(found.label[0, 0, 0] != "none")
     beside = [noisy[-1], noisy[-1] + 1] if noisy.size and noisy[-1] + 1 < len(speeds) else []
 

@@ -7,9 +7,9 @@ import pytest
 
 from models.rig_file import load_material_rig
 from noise.screening.advice import Offer, advise, changed
-from noise.screening.point import evaluate_point
 from noise.screening.summary import advice_words, limit_words
 from noise.screening.vibration import Condition, vibration_at
+from tests.helpers.quick_screens import evaluate_point
 from tests.screening.long_runs import vibrates_after
 
 FLUOROCARBON = load_material_rig("fluorocarbon")
