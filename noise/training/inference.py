@@ -1,6 +1,6 @@
 """Training of the inference of conditions, on simulation alone.
 
-Three independent sets of runs grow the forests, calibrate the intervals and test them. The features
+Two independent sets of runs grow the forests and calibrate the intervals. The features
 of the channels of a run do not depend on one another, so one run represents all subsets of its
 channels and logged conditions; the forests learn random subsets, and the intervals are calibrated
 for each subset.
@@ -29,8 +29,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -105,14 +106,7 @@ def _in_a_room(sound: Array, rate: float, rng: Rng) -> Array:
     return np.asarray(fftconvolve(sound, tail)[: sound.size])
 
 
-_FIXED_SHARE = 0.25
-_SCATTER = 0.03
-_GAIN_SCATTER = 0.03
-"""Scatter of the gains of calibrations [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class RunSample:
+class RunSample(NamedTuple):
     """Features of one audible run, with its label and condition.
 
     Parameters
@@ -158,7 +152,7 @@ def _draw_run(rng: Rng) -> Run:
     speed = rng.uniform(low, high) if even else log_uniform(low, high, rng)
     softest, stiffest = SUPPORT_RANGE
     support = log_uniform(softest, stiffest, rng)
-    if rng.random() < _FIXED_SHARE:
+    if rng.random() < 0.25:
         support = FIXED
     return simulate(
         _specimen(rng),
@@ -174,7 +168,7 @@ def _specimen(rng: Rng) -> Rig:
     rig = load_material_rig(MATERIAL)
 
     def about(value: float) -> float:
-        return value * math.exp(rng.normal(0.0, _SCATTER))
+        return value * math.exp(rng.normal(0.0, 0.03))
 
     def jittered(spec: LawSpec) -> LawSpec:
         return LawSpec(
@@ -202,7 +196,7 @@ def _on_the_rig(run: Run, rng: Rng) -> Recording:
     recording = run.recording
     rate = recording.rate if rng.random() < 0.5 else float(rng.choice(RATES[1:]))
     kinds = ("torque", "acceleration", "pressure")
-    gains = np.exp(rng.normal(0.0, _GAIN_SCATTER, (len(kinds), 1)))
+    gains = np.exp(rng.normal(0.0, 0.03, (len(kinds), 1)))
     samples = gains * [resampled(recording[kind], recording.rate, rate) for kind in kinds]
     return Recording(samples, rate, tuple(Channel(kind) for kind in kinds))
 
@@ -227,15 +221,7 @@ def _cut(recording: Recording, start: float, seconds: float) -> Recording:
     return replace(recording, samples=samples)
 
 
-_LEAST = 50
-"""Minimum number of recordings for the calibration of an interval."""
-
-_BEYOND = 0.05
-"""Share of the recordings beyond each end of the interval [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Runs:
+class Runs(NamedTuple):
     """Features and conditions of runs as arrays.
 
     Parameters
@@ -249,8 +235,13 @@ class Runs:
     tables: Array
     scaled: Array
 
-    def __getitem__(self, part: slice) -> Runs:
-        return Runs(self.tables[:, part], self.scaled[part])
+    @classmethod
+    def of(cls, samples: Iterable[RunSample], names: Sequence[str]) -> Runs:
+        """Return samples as arrays."""
+        rows = [
+            [[of_one[name] for name in names] for of_one in sample.features] for sample in samples
+        ]
+        return cls(np.array(rows).swapaxes(0, 1), np.array([s.scaled for s in samples]))
 
 
 def calibrate_intervals(model: Inference, runs: Runs) -> Inference:
@@ -310,9 +301,9 @@ def _mean_width(
 def _beyond(values: NDArray[np.float32], y: NDArray[np.float32]) -> tuple[int, int] | None:
     """Return the numbers of lowest and highest values outside of the interval, for 5 % each."""
     n = len(y)
-    if n < _LEAST:
+    if n < 50:  # too few
         return None
-    beyond = int(_BEYOND * (n + 1)) - 1  # conformal: one more counts as beyond
+    beyond = int(0.05 * (n + 1)) - 1  # conformal: one more counts as beyond
     # With i values left out below, recordings with at most i values at or below them are beyond.
     at_or_below = np.sort((values <= y[:, None]).sum(axis=1))
     at_or_above = np.sort((values >= y[:, None]).sum(axis=1))
@@ -354,14 +345,6 @@ def rounded(y: Array) -> NDArray[np.float32]:
     return np.asarray(y, dtype=np.float16).astype(np.float32)
 
 
-def _case_name(index: int, calibrated: int, subset: int, others: int) -> str:
-    """Return the name of a case in the card."""
-    left = [name for name in QUANTITIES if name != QUANTITIES[index]]
-    logged = "+".join(name for bit, name in enumerate(left) if others >> bit & 1) or "none"
-    kinds = "+".join(kind for bit, kind in enumerate(KINDS) if subset >> bit & 1)
-    return f"{QUANTITIES[index]}/{('field', 'rig')[calibrated]}/{kinds}/{logged}"
-
-
 def _cases() -> Iterator[tuple[int, int, int, int]]:
     """Yield quantity, calibration, subset of channels, and set of other logged conditions."""
     return itertools.product(range(len(QUANTITIES)), (0, 1), range(1, 1 << len(KINDS)), range(4))
@@ -373,28 +356,12 @@ N_TRAINING = 1800
 N_CALIBRATION = 1600
 """Number of runs to calibrate the intervals."""
 
-N_TEST = 200
-"""Number of runs to test the intervals."""
-
-N_TREES = 50
-LEAST_LEAF = 5
-
-_TIMES = 4
-"""Random subsets of channels and logged conditions per recording."""
-
-_SHARE = 0.4
-"""Share of the samples per tree."""
-
-_PRESSURE_ALONE = 0.35
-"""Share of subsets with the sound alone; others are any subset of the channels."""
-
 
 def train_inference(
     *,
     seed: int = 0,
     n_training: int = N_TRAINING,
     n_calibration: int = N_CALIBRATION,
-    n_test: int = N_TEST,
     progress: Callable[[Iterable[RunSample], int], Iterable[RunSample]] | None = None,
 ) -> Inference:
     """Train the inference of conditions; the same seed gives the same model.
@@ -402,15 +369,14 @@ def train_inference(
     Parameters
     ----------
     seed : int
-    n_training, n_calibration, n_test : int
-        Numbers of runs to train, to calibrate and to test.
+    n_training, n_calibration : int
+        Numbers of runs to grow the forests and to calibrate the intervals.
     progress : callable, optional
         ``progress(samples, total)`` yields the samples and shows the progress.
 
     Returns
     -------
     Inference
-        Its card has the coverage of the intervals on the test runs.
 
     Examples
     --------
@@ -418,7 +384,7 @@ def train_inference(
 
     >>> train_inference(seed=1).save("conditions.npz")  # doctest: +SKIP
     """
-    total = n_training + n_calibration + n_test
+    total = n_training + n_calibration
     children = np.random.SeedSequence(seed).spawn(total)
     drawn: Iterable[RunSample] = Parallel(n_jobs=-1, return_as="generator")(
         delayed(draw_run_sample)(child) for child in children
@@ -429,58 +395,39 @@ def train_inference(
         for name in recording_feature_names()
         if any(np.isfinite(sample.features[1][name]) for sample in samples[:n_training])
     )
-    runs = _as_arrays(samples, names)
-    grown = _grown(runs[:n_training], names, seed)
-    calibrated = calibrate_intervals(grown, runs[n_training : n_training + n_calibration])
-    tested = coverage(calibrated, samples[n_training + n_calibration :])
-    card = {
-        "seed": seed,
-        "samples": dict(Counter(sample.label for sample in samples[:n_training])),
-        "test": tested,
-    }
-    return replace(calibrated, card=card)
+    grown = _grown(Runs.of(samples[:n_training], names), names, seed)
+    calibrated = calibrate_intervals(grown, Runs.of(samples[n_training:], names))
+    labels = Counter(sample.label for sample in samples[:n_training])
+    return replace(calibrated, card={"seed": seed, "samples": dict(labels)})
 
 
-def coverage(model: Inference, samples: Iterable[RunSample]) -> dict[str, dict[str, float | int]]:
-    """Return the coverage of the intervals, and how often there is one.
+def coverage(model: Inference, samples: Sequence[RunSample]) -> dict[str, tuple[int, int]]:
+    """Count the intervals of samples that were not used in training, and those that hold.
 
     Parameters
     ----------
     model : Inference
-    samples : iterable of RunSample
-        Samples that were not used in training.
+    samples : sequence of RunSample
 
     Returns
     -------
-    dict of str to dict
-        By quantity, recording, channels and what is logged, such as ``speed/rig/pressure/none``:
-        number ``n`` of samples, share ``told`` with an interval, and share ``covered`` of these.
+    dict of str to (int, int)
+        By quantity and recording, such as ``speed/rig``, over all sets of channels and conditions.
     """
-    runs = _as_arrays(list(samples), model.names)
-    counts: dict[str, dict[str, float | int]] = {}
+    runs = Runs.of(samples, model.names)
+    counts: dict[str, tuple[int, int]] = {}
     for index, calibrated, subset, others in _cases():
         at = (index, subset, calibrated, others)
         outside, y = model.outside[at], rounded(runs.scaled[:, index])
-        values = _distribution(model, runs, index, calibrated, int(model.used[at]), others)
         if outside[0] < 0:
-            narrow = np.zeros(len(values), dtype=bool)
-        else:
-            narrow = model.is_narrow(index, values, outside)
-        held = (values[:, outside[2]] <= y) & (y <= values[:, -1 - outside[3]])
-        counts[_case_name(index, calibrated, subset, others)] = {
-            "n": len(y),
-            "told": round(float(np.mean(narrow)), 4),
-            "covered": round(float(np.mean(held[narrow])), 4) if narrow.any() else 0.0,
-        }
+            continue
+        values = _distribution(model, runs, index, calibrated, int(model.used[at]), others)
+        narrow = model.is_narrow(index, values, outside)
+        inside = (values[:, outside[2]] <= y) & (y <= values[:, -1 - outside[3]])
+        name = f"{QUANTITIES[index]}/{('field', 'rig')[calibrated]}"
+        given, right = counts.get(name, (0, 0))
+        counts[name] = (given + int(narrow.sum()), right + int(inside[narrow].sum()))
     return counts
-
-
-def _as_arrays(samples: list[RunSample], names: tuple[str, ...]) -> Runs:
-    tables = [
-        [[sample.features[calibrated][name] for name in names] for sample in samples]
-        for calibrated in (0, 1)
-    ]
-    return Runs(np.array(tables), np.array([sample.scaled for sample in samples]))
 
 
 def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
@@ -490,10 +437,8 @@ def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
     for index in range(len(QUANTITIES)):
         rows = []
         for table in runs.tables:
-            for _ in range(_TIMES):
-                subsets = np.where(
-                    rng.random(n) < _PRESSURE_ALONE, 1, rng.integers(1, 1 << len(KINDS), n)
-                )
+            for _ in range(4):  # random subsets of channels, often the sound alone
+                subsets = np.where(rng.random(n) < 0.35, 1, rng.integers(1, 1 << len(KINDS), n))
                 known = np.where(rng.random((n, 3)) < 0.5, runs.scaled, np.nan)
                 known[:, index] = np.nan
                 partial = of_channels(table, names, subsets)
@@ -502,9 +447,9 @@ def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
             grow_quantile_forest(
                 np.concatenate(rows),
                 np.tile(runs.scaled[:, index], len(rows)),
-                n_trees=N_TREES,
-                least_leaf=LEAST_LEAF,
-                share=_SHARE,
+                n_trees=50,
+                least_leaf=5,
+                share=0.4,
                 seed=seed,
             )
         )

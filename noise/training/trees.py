@@ -14,9 +14,6 @@ from noise.base.trees import LEAF, BoostedTrees, QuantileForest
 PER_LEAF = 8
 """Values per leaf of a quantile forest, at evenly spaced quantiles."""
 
-_FEATURES_A_SPLIT = 0.8
-"""Share of the features considered for a split; many features are missing in a sample."""
-
 
 def grow_boosted_trees(
     x: NDArray[np.floating[Any]], y: NDArray[np.int64], *, weight: Array, n_rounds: int, seed: int
@@ -156,7 +153,7 @@ def grow_quantile_forest(
         n_estimators=n_trees,
         min_samples_leaf=least_leaf,
         max_samples=share,
-        max_features=_FEATURES_A_SPLIT,
+        max_features=0.8,  # many features are missing in a sample
         random_state=seed,
         n_jobs=-1,
     ).fit(x, y)

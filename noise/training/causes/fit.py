@@ -56,14 +56,6 @@ from noise.training.causes.cases.draw import SHARED, DrawnCase, Truth, draw_case
 from noise.training.trees import as_arrays, boosted_nodes
 from sim.acquisition import Acquisition
 
-_OFFERED = 80
-"""Columns that a split is offered."""
-
-_LEARNING_RATE = 0.05
-_LEAVES, _FEWEST_IN_A_LEAF = 14, 8
-_BINS = 63
-"""Of a column's values."""
-
 _CERTAIN = 6.0
 """Logarithmic odds of a cause that no case has, or all have."""
 
@@ -101,39 +93,24 @@ def grow_cause_trees(
     grown = []
     for k in (k for k in range(y.shape[1]) if 0 < y[:, k].sum() < len(y)):
         rounds, (base[k],) = boosted_nodes(
-            x, y[:, k], max_iter=n_rounds, learning_rate=_LEARNING_RATE, max_leaf_nodes=_LEAVES,
-            min_samples_leaf=_FEWEST_IN_A_LEAF, max_bins=_BINS,
-            max_features=min(_OFFERED / x.shape[1], 1.0), random_state=seed + k,
+            x, y[:, k], max_iter=n_rounds, learning_rate=0.05, max_leaf_nodes=14,
+            min_samples_leaf=8, max_bins=63, max_features=min(80 / x.shape[1], 1.0),
+            random_state=seed + k,
         )  # fmt: skip
         grown += [(k, tree) for (tree,) in rounds]
     return as_arrays(grown, base)
 
 
 N_ROUNDS = 450
-N_TREES = 80
-N_LOOKED_AT = 6000
-"""Trees, and cases at most, from which it is seen what columns tell anything."""
-
 N_COLUMNS = 1000
 """Of the evidence that are kept: what tells nothing only blurs."""
-
-HELD_OUT_EVERY = 5
 
 FALSE_ALARMS = 0.06
 """Share of cases without a cause that may raise the alarm, at the setting, of trees that have seen
 fewer cases than those that answer; one in sixty did of those of the second rig's development
 benches by which it was chosen."""
 
-N_SUBSETS = 2
-"""Times that each case is learned again from some of its recordings."""
-
 _FEWEST_RECORDINGS = 3
-
-_FEWEST_QUIET = 30
-"""Least cases of quiet benches without a cause to estimate scatter; else those of all benches."""
-
-_POOR_SHARE = 0.3
-"""Share of the cases that are learned again with channels missing."""
 
 _POOR = (
     ("pressure",), ("acceleration",), ("acceleration", "pressure"), ("torque",),
@@ -141,9 +118,6 @@ _POOR = (
     ("torque", "acceleration", "pressure"),
 )  # fmt: skip
 """Sets of channels that users have."""
-
-_STIFFNESS = 1e-2
-"""Of the ridge that holds the calibration's weights near one for all causes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +162,7 @@ def train_posterior(
     x = x[:, columns]
     # Every fifth rig is kept from the trees whose answers set calibration and alarm; of those that
     # answer afterwards none is.
-    held_out = np.unique(rigs, return_inverse=True)[1] % HELD_OUT_EVERY == 0
+    held_out = np.unique(rigs, return_inverse=True)[1] % 5 == 0
     unseen = held_out & np.array(as_drawn)
     learned = grow_cause_trees(x[~held_out], y[~held_out], n_rounds=n_rounds, seed=seed)
     odds = learned.scores(x[unseen])
@@ -216,7 +190,7 @@ def null_scale(cases: Sequence[Known], names: Sequence[str]) -> Array:
     """
     without_cause = [case for case in cases if case.truth.kind == "none"]
     quiet = [case for case in without_cause if not case.departures]
-    chosen = quiet if len(quiet) >= _FEWEST_QUIET else without_cause
+    chosen = quiet if len(quiet) >= 30 else without_cause
     return scale_of([case.table for case in chosen], names)
 
 
@@ -224,9 +198,9 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     """Return the columns with the most splits in a forest of all causes."""
     from sklearn.ensemble import ExtraTreesClassifier
 
-    some = np.random.default_rng(seed).permutation(len(x))[:N_LOOKED_AT]
+    some = np.random.default_rng(seed).permutation(len(x))[:6000]
     forest = ExtraTreesClassifier(
-        N_TREES, min_samples_leaf=2, max_features=0.1, n_jobs=-1, random_state=seed
+        80, min_samples_leaf=2, max_features=0.1, n_jobs=-1, random_state=seed
     ).fit(x[some], y[some])
     most = np.argsort(-forest.feature_importances_, kind="stable")[:N_COLUMNS]
     return np.sort(most).astype(np.int64)
@@ -235,9 +209,9 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
 def _copies(case: Known, rng: Rng) -> Iterator[Known]:
     """Yield a case, then the case with fewer recordings or channels."""
     yield case
-    for _ in range(N_SUBSETS):
+    for _ in range(2):
         yield with_fewer(case, rng)
-    if rng.random() < _POOR_SHARE:
+    if rng.random() < 0.3:
         yield with_channels(case, _POOR[int(rng.integers(len(_POOR)))])
 
 
@@ -313,9 +287,7 @@ def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
     """Return a logistic regression for each cause, shrunk to that of all causes."""
     x = odds_features(odds)
     common = _logistic(x.reshape(-1, x.shape[2]), y.reshape(-1), np.zeros(x.shape[2]), 1e-6)
-    return np.array(
-        [_logistic(x[:, k], y[:, k], common, _STIFFNESS * len(y)) for k in range(y.shape[1])]
-    )
+    return np.array([_logistic(x[:, k], y[:, k], common, 1e-2 * len(y)) for k in range(y.shape[1])])
 
 
 def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) -> Array:
@@ -333,9 +305,6 @@ def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) ->
 
 _SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
 """Relative differences up to which estimates are taken for the same."""
-
-_FEWEST = 2
-"""Recordings of a case."""
 
 
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
@@ -366,7 +335,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
 def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
     """Return the table of a case, with the repeats of earlier cases where these apply."""
     rig, recordings, _, _ = prepared(case.rig, case.recordings)
-    if len(recordings) < _FEWEST:
+    if len(recordings) < 2:
         return None
     repeats = next((s for s in shared if s.serves(rig)), None)
     if repeats is None:

@@ -54,18 +54,6 @@ _N_ROUNDS, _REAL_ROUNDS = 220, 50
 _REAL_SHARE = 0.3
 """Share of the log odds of the real sounds' trees [-]; chosen on left-out sources."""
 
-_CHOSEN_BY = {
-    "any": ("any", "any", "any"),
-    "car": ("any", "any", "any"),
-    "rig": ("any", "rig", "any"),
-}
-"""Backgrounds that determine the thresholds of creak, squawk and squeal, by surroundings.
-Backgrounds of the surroundings alone are too few: their thresholds give false names for 11 of 219
-sounds of left-out sources in a car, and for 11 of 175 at a rig; these give 3 and 4."""
-
-_SENSITIVITIES = (0.5, 1.0, 2.0, 4.0)
-"""Sensitivities for which false names are counted [-]."""
-
 _KINDS = ("pressure", "acceleration", "torque")
 _SUBSETS = (
     ("pressure",),
@@ -78,18 +66,12 @@ _SUBSETS = (
 )
 """Subsets of channels that are learned; the most frequent ones come first."""
 
-_SELDOM = 0.4
-"""Weight of all but the first two subsets."""
-
 FALSE_NAMES_AN_HOUR = np.array([15.0, 8.0, 20.0])
 """Maximum number of false creaks, squawks and squeals in real backgrounds per hour [1/h], chosen so
 that real creaks and squeals of other sources are named."""
 
 _LEAST, _MOST = 0.25, 0.97
 """Range of the thresholds [-]."""
-
-_PRIOR = 20.0
-"""Strength of the prior of no change, in recordings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +107,7 @@ class Rows:
             for subset in _SUBSETS if several else _SUBSETS[:1]:
                 x.append(masked(sound.features, subset))
                 counts.append(len(sound.features))
-                share = 1.0 if subset in _SUBSETS[:2] else _SELDOM
+                share = 1.0 if subset in _SUBSETS[:2] else 0.4
                 weight.append(share * sound.weight / len(sound.features))
                 owner.append(i)
         owners = np.repeat(owner, counts)
@@ -177,8 +159,7 @@ def parts(sounds: Sequence[Sample], seed: int) -> NDArray[np.int64]:
     return np.array([part[name] for name in names], dtype=np.int64)
 
 
-@dataclass(frozen=True, eq=False)
-class LeftOut:
+class LeftOut(NamedTuple):
     """Probabilities of each sound by trees and a calibration without its part.
 
     Parameters
@@ -347,12 +328,18 @@ def real_backgrounds(sounds: Sequence[Sample], left_out: LeftOut) -> dict[str, l
 def _thresholds(
     backgrounds: Mapping[str, Sequence[Background]], surroundings: str, without: int = -1
 ) -> Thresholds:
-    """Return the thresholds for some surroundings by backgrounds of all parts but one."""
-    fitted = {
-        name: fit_thresholds([b.probabilities for b in backgrounds[name] if b.part != without])
-        for name in set(_CHOSEN_BY[surroundings])
-    }
-    creak, squawk, squeal = (fitted[n][i] for i, n in enumerate(_CHOSEN_BY[surroundings]))
+    """Return the thresholds for some surroundings by backgrounds of all parts but one.
+
+    Those of a rig alone determine its threshold of a squawk, those of any place all others.
+    Backgrounds of the surroundings alone are too few: their thresholds give false names for 11 of
+    219 sounds of left-out sources in a car, and for 11 of 175 at a rig; these give 3 and 4.
+    """
+    creak, squawk, squeal = fit_thresholds(
+        [b.probabilities for b in backgrounds["any"] if b.part != without]
+    )
+    if surroundings == "rig":
+        own = [b.probabilities for b in backgrounds["rig"] if b.part != without]
+        squawk = fit_thresholds(own)[1]
     return creak, squawk, squeal
 
 
@@ -395,7 +382,7 @@ def left_out_scores(
             name: false_name_rates(
                 of_place,
                 {k: _thresholds(backgrounds, name, k) for k in {b.part for b in of_place}},
-                _SENSITIVITIES,
+                (0.5, 1.0, 2.0, 4.0),
             )
             for name, of_place in backgrounds.items()
             if of_place
@@ -479,7 +466,7 @@ def fit_calibration(
 
     def loss(x: Array) -> float:
         p = clearest(calibration(x)(votes), group)[rows, y]
-        return float(np.average(-np.log(p), weights=weight) + _PRIOR / y.size * np.mean(x**2))
+        return float(np.average(-np.log(p), weights=weight) + 20.0 / y.size * np.mean(x**2))
 
     bounds = [(-2.0, 2.0)] * (labels + 1)
     return calibration(minimize(loss, np.zeros(labels + 1), method="L-BFGS-B", bounds=bounds).x)

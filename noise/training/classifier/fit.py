@@ -73,12 +73,6 @@ _LABELS = {
 }
 """Labels by class; other classes are ambiguous."""
 
-_FRICTION = ("hacksaw", "hand_saw")
-"""Names of files with friction of saws, which is neither a noise nor a background."""
-
-_CLEAN = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
-"""Start of a licence that permits training and distribution of the result."""
-
 _WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
 """Weights of real sounds, relative to a simulated sample [-]; chosen on left-out sources."""
 
@@ -111,10 +105,13 @@ def describe_folder(folder: Path) -> RealSounds:
     """Return the features of the sounds of a folder with a suitable licence."""
     samples, licences = [], {}
     with (folder / "sources.csv").open(encoding="utf-8", newline="") as table:
-        rows = [row for row in csv.DictReader(table) if _CLEAN.match(row["licence"])]
+        # Licences that permit training and distribution of the result.
+        free = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
+        rows = [row for row in csv.DictReader(table) if free.match(row["licence"])]
     for number, row in enumerate(rows):
         label = _LABELS.get(row["class"])
-        if label is None or any(word in row["file"] for word in _FRICTION):
+        # The friction of saws is neither a noise nor a background.
+        if label is None or "hacksaw" in row["file"] or "hand_saw" in row["file"]:
             continue
         recording = read_recording(folder / row["file"])
         windows = window_features(RecordingBlocks.of(recording).track(0))

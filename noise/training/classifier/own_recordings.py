@@ -33,14 +33,8 @@ LONGEST_WINDOW = 1.0
 SHORTEST_WINDOW = 0.1
 """Minimum duration of a labelled stretch [s]."""
 
-MOST_WINDOWS = 60
-"""Maximum number of windows of a stretch, spread evenly over it."""
-
 OWN_WEIGHT = 5.0
 """Weight of a window of the user, relative to a simulated sample."""
-
-TOO_FEW = 5
-"""Minimum number of files of a label for a meaningful score."""
 
 
 class _Stretch(NamedTuple):
@@ -134,7 +128,7 @@ def own_card(samples: Sequence[Sample], names: NDArray[np.intp]) -> dict[str, ob
             labels[label] = {
                 "files": len(files),
                 "windows": int(own.sum()),
-                "enough": len(files) >= TOO_FEW,
+                "enough": len(files) >= 5,
                 "recall": round(float(np.mean(names[own] == i)), 4) if own.any() else None,
                 "false_names": int(np.sum((names == i) & ~own)),
             }
@@ -220,7 +214,8 @@ def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iter
                 continue
             n = math.ceil((last - first) / (LONGEST_WINDOW * blocks.rate))
             edges = np.linspace(first, last, n + 1).round().astype(int)
-            chosen = np.unique(np.linspace(0, n - 1, min(n, MOST_WINDOWS)).round().astype(int))
+            # At most 60 windows, spread evenly
+            chosen = np.unique(np.linspace(0, n - 1, min(n, 60)).round().astype(int))
             for index in chosen.tolist():
                 cut = RecordingBlocks.of(blocks.cut(int(edges[index]), int(edges[index + 1])))
                 features = window_features(cut).features if has_window_channel(cut) else None

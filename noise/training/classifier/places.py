@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
 from features.kernels.level_meter import a_weighting
+from noise.base import packaged_toml
 from noise.base.arrays import Array, Rng
 from noise.training.classifier.background_sounds import background_sound
 from noise.training.classifier.synthesis import blow, placed, wavering
@@ -57,50 +58,13 @@ def in_a_room(sound: Array, rate: float, rng: Rng) -> Array:
     return np.asarray(fftconvolve(sound, taps)[: sound.size])
 
 
-_ROAD = (
-    (20, 0), (32, 0), (63, -6), (125, -17), (250, -28), (500, -36), (900, -41), (1600, -50),
-    (3000, -61), (6000, -74), (12000, -88),
-)  # fmt: skip
-_WIND = (
-    (20, 0), (63, -8), (125, -14), (250, -21), (500, -27), (1000, -33), (2000, -40), (4000, -49),
-    (8000, -60), (14000, -70),
-)  # fmt: skip
-_FAN = ((20, -8), (100, -3), (400, 0), (1000, -4), (2500, -14), (6000, -28), (12000, -44))
-"""Spectra [dB] over frequency [Hz]."""
+TABLE = packaged_toml("noise.training.classifier", "places.toml")
+"""Spectra, cabins and microphones."""
 
-
-class Cabin(NamedTuple):
-    """Ranges of the parameters of a family of cabins.
-
-    Parameters
-    ----------
-    road, wind, fan, drive : pair of float
-        Levels of the four components [dB].
-    turns : pair of float
-        Speed of the crankshaft or motor [1/s].
-    cylinders : tuple of int
-        Numbers of cylinders; ``0`` is an electric motor.
-    roll_off : pair of float
-        Exponent of the decrease of the orders with frequency [-].
-    """
-
-    road: tuple[float, float]
-    wind: tuple[float, float]
-    fan: tuple[float, float]
-    drive: tuple[float, float]
-    turns: tuple[float, float]
-    cylinders: tuple[int, ...]
-    roll_off: tuple[float, float]
-
-
-CABINS = {
-    "petrol_car": Cabin((-6, 6), (-14, 4), (-45, -20), (-14, 2), (13, 70), (3, 4, 6), (1.5, 3.0)),
-    "diesel_car": Cabin((-6, 6), (-14, 4), (-45, -20), (-8, 6), (12, 55), (4, 5, 6), (1.2, 2.5)),
-    "electric_car": Cabin((-4, 6), (-12, 5), (-40, -16), (-46, -22), (10, 180), (0,), (0.3, 1.5)),
-    "standing_car": Cabin((-60, -30), (-50, -20), (-16, 0), (-6, 6), (11, 17), (3, 4), (1.0, 2.5)),
-    "van": Cabin((-2, 8), (-8, 6), (-36, -12), (-6, 6), (12, 55), (4,), (1.0, 2.2)),
-}
+CABINS: Mapping[str, Mapping[str, Any]] = TABLE["cabins"]
 """Families of cabins by name."""
+
+_SPECTRA = TABLE["spectra"]
 
 
 def cabin(kind: str, n: int, rate: float, rng: Rng) -> Array:
@@ -128,21 +92,21 @@ def cabin(kind: str, n: int, rate: float, rng: Rng) -> Array:
     """
     what = CABINS[kind]
     road = _road(n, rate, rng)
-    wind = shaped_noise(n, rate, _WIND, rng)
+    wind = shaped_noise(n, rate, _SPECTRA["wind"], rng)
     wind *= np.exp(rng.uniform(0.0, 0.5) * wandering(n, rate, rng.uniform(0.3, 3.0), rng))
-    fan = shaped_noise(n, rate, _FAN, rng)
-    turns = log_uniform(*what.turns, rng) * wavering(n, rate, 0.4, rng.uniform(0.0, 0.15), rng)
-    cylinders = int(rng.choice(what.cylinders))
-    roll_off = rng.uniform(*what.roll_off)
+    fan = shaped_noise(n, rate, _SPECTRA["fan"], rng)
+    slowest, fastest = what["turns"]
+    turns = log_uniform(slowest, fastest, rng) * wavering(n, rate, 0.4, rng.uniform(0.0, 0.15), rng)
+    cylinders = int(rng.choice(what["cylinders"]))
+    roll_off = rng.uniform(*what["roll_off"])
     if cylinders:
         drive = orders(turns, rate, 0.5, 0.5 * cylinders, roll_off, rng)
     else:
         drive = orders(turns, rate, 4.0, float(rng.choice((24.0, 36.0, 48.0))), roll_off, rng)
         drive += 10.0 ** rng.uniform(-2.5, -0.5) * _inverter(turns, rate, rng)
-    levels = (what.road, what.wind, what.fan, what.drive)
     sound = np.zeros(n)
-    for part, level in zip((road, wind, fan, drive), levels, strict=True):
-        sound += 10.0 ** (rng.uniform(*level) / 20.0) * part / (part.std() + 1e-12)
+    for name, part in (("road", road), ("wind", wind), ("fan", fan), ("drive", drive)):
+        sound += 10.0 ** (rng.uniform(*what[name]) / 20.0) * part / (part.std() + 1e-12)
     return np.asarray(sound / sound.std())
 
 
@@ -225,7 +189,7 @@ def orders(
 
 def _road(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of rolling on a rough surface, sometimes with joints."""
-    sound = shaped_noise(n, rate, _ROAD, rng)
+    sound = shaped_noise(n, rate, _SPECTRA["road"], rng)
     cavity = rng.uniform(190.0, 250.0)
     narrow = ((20, -60), (cavity / 1.2, -25), (cavity, 0), (1.2 * cavity, -25), (8000, -60))
     sound += rng.uniform(0.0, 0.5) * shaped_noise(n, rate, narrow, rng)
@@ -254,12 +218,7 @@ def _inverter(turns: Array, rate: float, rng: Rng) -> Array:
     return sound
 
 
-_AIR = ((20, 2), (80, 3), (250, 0), (1000, -8), (3000, -18), (8000, -32), (16000, -46))
-_HISS = ((20, -40), (300, -22), (1500, -6), (5000, 0), (12000, -4), (20000, -12))
-"""Spectra of ventilation and of valves [dB] over frequency [Hz]."""
-
 _BLADES = (5.0, 7.0, 8.0, 9.0, 11.0)
-_PISTONS = (7.0, 9.0, 11.0)
 
 
 def hydraulic_hall(n: int, rate: float, rng: Rng) -> Array:
@@ -267,9 +226,11 @@ def hydraulic_hall(n: int, rate: float, rng: Rng) -> Array:
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 3))):
         turns = _mains_turns(rng) * wavering(n, rate, 0.3, 0.004, rng)
-        pump = orders(turns, rate, 1.0, float(rng.choice(_PISTONS)), rng.uniform(0.0, 1.2), rng)
+        pump = orders(
+            turns, rate, 1.0, float(rng.choice((7.0, 9.0, 11.0))), rng.uniform(0.0, 1.2), rng
+        )
         sound += 10.0 ** rng.uniform(-1.0, 0.6) * pump / pump.std()
-    valves = 10.0 ** rng.uniform(-1.5, 0.0) * shaped_noise(n, rate, _HISS, rng)
+    valves = 10.0 ** rng.uniform(-1.5, 0.0) * shaped_noise(n, rate, _SPECTRA["valves"], rng)
     return np.asarray(sound + valves)
 
 
@@ -285,7 +246,7 @@ def workshop(n: int, rate: float, rng: Rng) -> Array:
     if rng.random() < 0.4:
         turns = rng.uniform(60.0, 180.0) * wavering(n, rate, 1.0, 0.1, rng)
         tool = orders(turns, rate, 1.0, float(rng.integers(2, 9)), rng.uniform(0.3, 1.2), rng)
-        tool = tool / tool.std() + 0.5 * shaped_noise(n, rate, _HISS, rng)
+        tool = tool / tool.std() + 0.5 * shaped_noise(n, rate, _SPECTRA["valves"], rng)
         working = np.clip(2.0 * wandering(n, rate, 0.5, rng) + 0.5, 0.0, 1.0)
         sound += rng.uniform(0.02, 0.6) * working * tool
     return sound
@@ -319,7 +280,7 @@ def bench_with_a_motor(n: int, rate: float, rng: Rng) -> Array:
 
 
 def _air(n: int, rate: float, rng: Rng) -> Array:
-    air = shaped_noise(n, rate, _AIR, rng)
+    air = shaped_noise(n, rate, _SPECTRA["ventilation"], rng)
     return in_a_room(air, rate, rng) if rng.random() < 0.2 else air
 
 
@@ -491,12 +452,6 @@ def _longest(sounds: NDArray[np.bool_], duration: float) -> tuple[float, float]:
     return int(starts[best]) * _FRAME, end
 
 
-_QUIETS = {
-    "hiss": 0.12, "hum": 0.14, "background": 0.09, "sliding": 0.07, "place": 0.56, "silence": 0.02,
-}  # fmt: skip
-"""Shares of the kinds of quiet [-]."""
-
-
 def background(n: int, rate: float, rng: Rng) -> Array:
     """Return steady noise of a room, a cabin, a road or wind, of unit standard deviation.
 
@@ -584,7 +539,10 @@ def quiet(n: int, rate: float, rng: Rng) -> Array:
     >>> quiet(480, 48e3, np.random.default_rng(0)).shape
     (480,)
     """
-    kind = picked(_QUIETS, rng)
+    kind = picked(
+        {"hiss": 0.12, "hum": 0.14, "background": 0.09, "sliding": 0.07, "place": 0.56,
+         "silence": 0.02}, rng,
+    )  # fmt: skip
     if kind == "silence":
         return np.zeros(n)
     if kind == "place":

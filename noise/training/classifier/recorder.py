@@ -16,16 +16,15 @@ from scipy.signal import firwin, lfilter, oaconvolve, resample_poly
 
 from models.recording import Channel, Recording
 from noise.base.arrays import Array, Rng
-from noise.training.classifier.places import a_weighted, background, in_a_place, in_a_room, place
+from noise.training.classifier.places import (
+    TABLE,
+    a_weighted,
+    background,
+    in_a_place,
+    in_a_room,
+    place,
+)
 from noise.training.draws import Span, coloured_noise, log_uniform, low_pass, picked, wandering
-
-_BANDS = {
-    "free": ((15.0, 250.0), (5e3, 20e3), 2, 4.0),
-    "phone": ((80.0, 250.0), (6.5e3, 12e3), 4, 7.0),
-    "pocket": ((80.0, 250.0), (700.0, 3e3), 3, 8.0),
-    "stethoscope": ((30.0, 150.0), (800.0, 3e3), 4, 12.0),
-}
-"""Ranges of the lower and upper band limits [Hz], order, and maximum ripple [dB]."""
 
 
 def through_a_microphone(sound: Array, rate: float, rng: Rng, *, kind: str = "free") -> Array:
@@ -56,14 +55,15 @@ def through_a_microphone(sound: Array, rate: float, rng: Rng, *, kind: str = "fr
     """
     m = next_fast_len(sound.size, real=True)
     frequency = rfftfreq(m, 1.0 / rate)
-    lows, highs, order, most = _BANDS[kind]
-    low, high = log_uniform(*lows, rng), log_uniform(*highs, rng)
+    row = TABLE["microphones"][kind]
+    low, high = (log_uniform(ends[0], ends[1], rng) for ends in (row["low"], row["high"]))
+    order = row["order"]
     gain = 1.0 / np.sqrt(
         (1.0 + (low / np.maximum(frequency, 1.0)) ** order) * (1.0 + (frequency / high) ** order)
     )
     octaves = np.log2(np.maximum(frequency, 20.0) / 1e3)
     ripple = np.sin(rng.uniform(1.0, 4.0) * octaves + rng.uniform(0.0, 6.3))
-    gain *= 10.0 ** (rng.uniform(0.0, most) / 20.0 * ripple)
+    gain *= 10.0 ** (rng.uniform(0.0, row["ripple"]) / 20.0 * ripple)
     coloured = irfft(rfft(sound, m) * gain, m)[: sound.size]
     return coloured + _rubbing(coloured, rate, rng) if kind == "pocket" else np.asarray(coloured)
 
@@ -355,7 +355,7 @@ def augmented(
         left = float(a_weighted(resampled(sound, rate, low), low).std()) ** 2
         if left < 0.5 * float(a_weighted(sound, rate).std()) ** 2:
             low = wanted
-    kind = picked({"free": 0.62, "phone": 0.28, "pocket": 0.05, "stethoscope": 0.05}, rng)
+    kind = picked({name: row["share"] for name, row in TABLE["microphones"].items()}, rng)
     signal, lasts = recorded(sound, rate, rng, kind=kind, span=span)
     signal = resampled(signal, rate, wanted)
     if low < wanted and rng.random() < 0.5:

@@ -9,7 +9,7 @@ has a frequency by its radius and rises as it nears the surface (Minnaert 1933).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -643,7 +643,7 @@ def _course(change: Row, n: int, rate: float, draws: Draws) -> Sound:
         popping = np.maximum(rng.standard_normal(n), 0.0)
         gate = np.abs(resonance(popping - popping.mean(), draws(specs), 40.0, rate))
         return np.asarray(0.1 + gate / (gate.max() + 1e-12))
-    numbers = _numbers(specs, draws)
+    numbers = map(draws, specs)
     first, second = next(numbers), next(numbers)
     if kind == "wander":
         return wavering(n, rate, second, first, rng)
@@ -666,7 +666,3 @@ def _course(change: Row, n: int, rate: float, draws: Draws) -> Sound:
     place = pulse % 1.0
     inside = np.where(place < second, np.sin(np.pi * place / second), 0.0) ** rng.uniform(0.5, 1.5)
     return np.asarray(inside * (pulse.astype(int) % max(period, on) < on))
-
-
-def _numbers(specs: list[Any], draws: Draws) -> Iterator[float]:
-    return map(draws, specs)

@@ -31,9 +31,10 @@ from noise.diagnosis.simulated.repeats import (
     repeat_motion,
 )
 from noise.training.causes.cases.rigs import NOISE_DRAWN, Setting, draw_setting, draw_start
-from noise.training.causes.cases.structures import THESIS, draw_structure, draw_trade
+from noise.training.causes.cases.structures import TRADES, draw_structure
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.training.causes.cases.variants import draw_variant
+from noise.training.draws import picked
 from sim.acquisition import Acquisition, decimate, digitise
 from sim.bushing import lumped_bushing
 from sim.chain import apply_chain_effects
@@ -190,7 +191,8 @@ def _drawn_rig(number: int) -> _DrawnRig:
     rng = np.random.default_rng([0, number])
     setting = draw_setting(rng)
     rig, bench = setting.rig, setting.bench
-    trade = draw_trade(rng) if bench.departures else THESIS
+    shares = {name: row["share"] for name, row in TRADES.items()}
+    trade = picked(shares, rng) if bench.departures else "thesis"
     supports = sorted({c.support_stiffness for c in setting.conditions})
     middle = rig.fits[len(rig.fits) // 2].interference
     structures = {

@@ -12,7 +12,7 @@ from scipy.fft import irfft
 from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.base import log_uniform
+from noise.base import log_uniform, packaged_toml
 from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import log_uniforms
 from sim.bushing import LumpedBushing
@@ -23,36 +23,8 @@ _LINES = np.arange(10.0, 10_001.0, 2.5)
 _SOUND_SPEED = 343.0
 
 
-@dataclass(frozen=True)
-class Trade:
-    """What stands behind a clamp, by trade.
-
-    Parameters
-    ----------
-    share : float
-        How often it is met, besides that of the thesis [-].
-    modes : tuple of int
-        Fewest of what sounds, and one more than the most.
-    damping_ratios : tuple of float
-        Between which theirs lie [-].
-    loud : float
-        Their modal constants over those of the thesis's plate [-].
-    """
-
-    share: float
-    modes: tuple[int, int]
-    damping_ratios: tuple[float, float]
-    loud: float
-
-
-THESIS = Trade(0.5, (12, 40), (0.008, 0.035), 1.0)
-
-TRADES = (
-    THESIS,
-    Trade(0.2, (3, 12), (0.004, 0.03), 0.6),  # a heavy plate, or a block
-    Trade(0.2, (40, 80), (0.003, 0.02), 1.5),  # sheet metal
-    Trade(0.1, (2, 5), (0.02, 0.1), 0.15),  # hardly anything but the clamp
-)
+TRADES = packaged_toml("noise.training.causes.cases", "laws.toml")["trades"]
+"""What stands behind a clamp: rows of the table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,17 +110,11 @@ class Structure:
         )  # fmt: skip
 
 
-def draw_trade(rng: Rng) -> Trade:
-    """Draw what stands behind a clamp."""
-    share = np.array([trade.share for trade in TRADES])
-    return TRADES[int(rng.choice(len(TRADES), p=share / share.sum()))]
-
-
-def draw_structure(bushing: LumpedBushing, rng: Rng, trade: Trade = THESIS) -> Structure:
+def draw_structure(bushing: LumpedBushing, rng: Rng, trade: str = "thesis") -> Structure:
     """Draw the structure of a support; stiffer beams ring higher, a bolted clamp hardly moves."""
-    fixed = bushing.clamp_is_fixed
+    fixed, row = bushing.clamp_is_fixed, TRADES[trade]
     stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
-    n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(*trade.modes))
+    n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(*row["modes"]))
     frequency = stiffer * log_uniforms(rng, 500.0, 7500.0, n_beams)
     damping, constant = rng.uniform(0.008, 0.03, n_beams), rng.uniform(3.0, 18.0, n_beams)
     constant *= (0.2 if fixed else 1.0) * rng.choice([-1.0, 1.0], n_beams)
@@ -157,10 +123,11 @@ def draw_structure(bushing: LumpedBushing, rng: Rng, trade: Trade = THESIS) -> S
         n = int(rng.integers(2, 6))
         low, damping = log_uniforms(rng, 110.0, 900.0, n), rng.uniform(0.01, 0.03, n)
         beams = np.concatenate([beams, [low, damping, rng.uniform(0.4, 2.5, n)]], axis=1)
-    loud = 0.012 * trade.loud * log_uniform(0.4, 2.5, rng)
+    least, most = row["damping_ratios"]
+    loud = 0.012 * row["loud"] * log_uniform(0.4, 2.5, rng)
     plate = [
         log_uniforms(rng, 110.0, 12e3, n_plate),
-        rng.uniform(*trade.damping_ratios, n_plate),
+        rng.uniform(least, most, n_plate),
         loud * rng.standard_normal(n_plate),
     ]
     anchors = [
