@@ -1,31 +1,26 @@
 from .kernels.harmonics import (
     Harmonics as Harmonics,
+    PitchTrack as PitchTrack,
     analyse_harmonics as analyse_harmonics,
-)
-from .kernels.level_meter import (
-    SoundLevels as SoundLevels,
-    a_weighted as a_weighted,
-    a_weighting as a_weighting,
-    fast_levels as fast_levels,
-    overall_level as overall_level,
-    sound_levels as sound_levels,
+    pitch_track as pitch_track,
 )
 from .kernels.levels import (
     NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
     REFERENCES as REFERENCES,
     THESIS_BANDS as THESIS_BANDS,
+    SoundLevels as SoundLevels,
+    a_weighted as a_weighted,
+    a_weighting as a_weighting,
     band_levels as band_levels,
     band_power as band_power,
+    fast_levels as fast_levels,
+    sound_levels as sound_levels,
     third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,
 )
 from .kernels.lines import (
     Lines as Lines,
     find_lines as find_lines,
-)
-from .kernels.pitch import (
-    PitchTrack as PitchTrack,
-    pitch_track as pitch_track,
 )
 from .kernels.slips import (
     Pulses as Pulses,

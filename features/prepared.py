@@ -29,13 +29,13 @@ from features.kernels.conditioning import (
     usable_limit,
 )
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
-from features.kernels.level_meter import a_weighted_level
 from features.kernels.levels import (
     LEAST_SHARE_DB,
     NOMINAL_THIRD_OCTAVES,
     REFERENCES,
     THESIS_BANDS,
     THIRD_OCTAVE_RESOLUTION,
+    a_weighted_level,
     band_power,
     relative_db,
     third_octave_levels,

@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.level_meter import overall_level
+from features.kernels.levels import a_weighting, band_levels
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.recording import REFERENCE_PRESSURE
@@ -212,4 +212,5 @@ def _level(pressure: NDArray[np.float64], rate: float) -> float:
     if not np.any(pressure):
         return -math.inf
     spectrum = autospectrum(pressure, rate)
-    return overall_level(spectrum, reference=REFERENCE_PRESSURE, weighting="A")
+    density = spectrum.density * 10.0 ** (0.1 * a_weighting(spectrum.frequency))
+    return float(band_levels(density.sum() * spectrum.spacing, REFERENCE_PRESSURE))

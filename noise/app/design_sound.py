@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from features.kernels.level_meter import sound_levels
+from features.kernels.levels import sound_levels
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording

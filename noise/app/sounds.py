@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from features.kernels.level_meter import fast_level_pieces, sound_levels
-from features.kernels.levels import REFERENCES
+from features.kernels.levels import REFERENCES, fast_level_pieces, sound_levels
 from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel

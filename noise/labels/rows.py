@@ -33,7 +33,7 @@ from noise.recordings.rotation import agrees, as_logged
 
 _SHORTEST = 0.1
 """Minimum duration of a reliable label [s]: shorter events are not described on their own
-(`features.windows.events`); squeals of the rig of this duration are labelled correctly."""
+(`features.windows.table`); squeals of the rig of this duration are labelled correctly."""
 
 _DIGITS = 4
 """Significant digits of inferred values, more than their precision."""

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.level_meter import a_weighted_level
-from features.kernels.levels import band_levels, band_power
+from features.kernels.levels import a_weighted_level, band_levels, band_power
 from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
 from models.drawing import BLUE, VERMILION, padded, styled, thinned

@@ -19,7 +19,7 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from features.kernels.level_meter import a_weighted_level
+from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from features.kernels.level_meter import a_weighted, fast_levels, sound_levels
-from features.kernels.levels import band_power
+from features.kernels.levels import a_weighted, band_power, fast_levels, sound_levels
 from features.kernels.spectra import autospectrum
 from features.recording import feature_vector
 from models.errors import ParameterError

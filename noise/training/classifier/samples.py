@@ -133,7 +133,7 @@ def described(drawn: Drawn) -> Sample:
     end = np.minimum(start + LENGTH, drawn.recording.duration)
     inside = np.minimum(end, drawn.span[1]) - np.maximum(start, drawn.span[0])
     # All but 0.2 s of a window is in the span, or 0.9 of a short event: window features describe
-    # the event alone (`features.windows.events`).
+    # the event alone (`features.windows.table`).
     enough = np.minimum(end - start - 0.2, 0.9 * (drawn.span[1] - drawn.span[0]))
     chosen = (inside >= enough) & (windows.level > windows.level.max() - QUIET_DB)
     chosen[np.argmax(inside + 1e-6 * windows.level)] |= not chosen.any()
