@@ -44,10 +44,7 @@ OPTIONS = (
             Option("--environment NAME", str, "dry"),
         ),
     ),
-    (
-        Option("--tolerances"),
-        Option("--no-tolerances"),
-    ),
+    Option("--no-tolerances"),
     Option("--simulations N", whole_number(1)),
     Option("--workers N", whole_number(1, most=MOST_WORKERS), -1),
 )
@@ -77,7 +74,7 @@ def run(options: Namespace) -> int:
                 options.designs,
                 use,
                 environments=environments,
-                tolerances=True if options.tolerances else False if options.no_tolerances else None,
+                tolerances=not options.no_tolerances,
                 rng=np.random.default_rng(options.seed),
                 change=change,
                 simulations=options.simulations or DEFAULT_SIMULATIONS,

@@ -4,8 +4,6 @@ Parts are drawn as scrambled Sobol' points. A part is noisy if anywhere among th
 a vibration lasts that is heard, whether it breaks out or only persists: it is tried where the
 nominal design is loudest, where its own sliding is least stable, and at the ends of the use. The
 interval of that probability is that of Clopper and Pearson, which covers at least what it states.
-
-A file that states no tolerances gets those of `ASSUMED`, and the answer says so.
 """
 
 from __future__ import annotations
@@ -30,16 +28,6 @@ from noise.screening.vibration import Condition
 from sim.analysis.stability import growth_of_parts
 from sim.effects import EFFECTS
 from sim.temperature import at_temperature
-
-ASSUMED = (
-    Tolerance("elastomer_stiffness", 0.05),
-    Tolerance("damping", 0.1),
-    Tolerance("critical_torque", 0.05),
-    Tolerance("kinetic_torque", 0.05),
-    Tolerance("support_stiffness", 0.03),
-    Tolerance("interference", 0.03),
-)
-"""Tolerances where a design states none: orders of magnitude for moulded rubber, no source."""
 
 _SPEEDS = 9
 """Number of speeds of use at which the growth rate is computed."""
@@ -173,14 +161,11 @@ class NoisyParts:
     ----------
     probability, low, high : float
         [-]
-    assumed : bool
-        Whether the tolerances are `ASSUMED` rather than the design's own.
     """
 
     probability: float
     low: float
     high: float
-    assumed: bool
 
 
 def noisy_parts(
@@ -197,7 +182,7 @@ def noisy_parts(
     Parameters
     ----------
     design : Design
-        Its rig in its environment.
+        Its rig in its environment; with tolerances.
     at : Condition
         That the parts scatter about, with the speed at which the nominal design is loudest.
     use : (float, float)
@@ -221,22 +206,21 @@ def noisy_parts(
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> quiet, at = Design("PDMS", load_material_rig("PDMS")), Condition(1.0, 0.279e-3, 2214.0)
-    >>> rng = np.random.default_rng(0)
-    >>> noisy_parts(quiet, at, (0.5, 1.0), rng, parts=4, workers=1).probability
-    0.0
+    >>> quiet = Design("PDMS", load_material_rig("PDMS"), tolerances=(Tolerance("damping", 0.1),))
+    >>> at, rng = Condition(1.0, 0.279e-3, 2214.0), np.random.default_rng(0)
+    >>> noisy_parts(quiet, at, (0.5, 1.0), rng, parts=4, workers=1)
+    NoisyParts(probability=0.0, low=0.0, high=0.602...)
     """
     speeds = np.linspace(max(use[0], 0.02 * use[1]), use[1], _SPEEDS)
     nominal = nominal_values(design.rig, at)
-    tolerances = design.tolerances or ASSUMED
-    sampled = stats.qmc.Sobol(len(tolerances), rng=rng).random(parts)
+    sampled = stats.qmc.Sobol(len(design.tolerances), rng=rng).random(parts)
     factors = np.column_stack(
         [
             factor_of(one, nominal[one.name]).ppf(column)
-            for one, column in zip(tolerances, sampled.T, strict=True)
+            for one, column in zip(design.tolerances, sampled.T, strict=True)
         ]
     )
-    names = [one.name for one in tolerances]
+    names = [one.name for one in design.tolerances]
     drawn = [varied(design.rig, at, dict(zip(names, row, strict=True))) for row in factors.tolist()]
     growth: NDArray[np.float64] = growth_of_parts(
         [
@@ -257,6 +241,4 @@ def noisy_parts(
         )
     k = int(sum(results))
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")
-    return NoisyParts(
-        k / parts, float(interval.low), float(interval.high), assumed=not design.tolerances
-    )
+    return NoisyParts(k / parts, float(interval.low), float(interval.high))

@@ -169,10 +169,10 @@ def screen(
     given: Use | None = None,
     *,
     environments: Sequence[str] = (DRY,),
-    tolerances: bool | None = None,
+    tolerances: bool = True,
     rng: np.random.Generator | None = None,
     change: Callable[[Rig], Rig] | None = None,
-    simulations: int | None = DEFAULT_SIMULATIONS,
+    simulations: int = DEFAULT_SIMULATIONS,
     workers: int = -1,
     progress: Callable[[str], None] = lambda _: None,
     advance: Callable[[float], None] = lambda _: None,
@@ -189,15 +189,15 @@ def screen(
         alone, only that is mapped.
     environments : sequence of str
         Of `noise.screening.environments`.
-    tolerances : bool, optional
-        Whether to analyse the tolerances of all designs, with assumed ones where they state none;
-        by default only of those that state some. It takes several seconds per design.
+    tolerances : bool
+        Whether to look at the parts of designs that state tolerances, which takes several seconds
+        per design.
     rng : numpy.random.Generator, optional
         Of the parts within tolerances; by default of seed 0.
     change : callable, optional
         Makes another rig of that of each design, such as ``lambda rig: rig.changed(damping="x2")``.
-    simulations : int, optional
-        Of a map, more or less; None follows every boundary to the end.
+    simulations : int
+        Of a map, more or less.
     workers : int
         Threads; -1 is one a core.
     progress : callable
@@ -234,7 +234,7 @@ def screen(
         for name in names
         for swinging in motions
     }
-    work = _Work(advance, len(loaded) * len(grids), simulations or DEFAULT_SIMULATIONS)
+    work = _Work(advance, len(loaded) * len(grids), simulations)
     maps: list[DesignMap] = []
     notes: dict[tuple[str, str], list[str]] = {}
     evaluate = batch_evaluator(workers=workers, advance=work.add)
@@ -271,12 +271,11 @@ def screen(
         design = replace(design, rig=in_environment(design.rig, environment(one.environment)))
         standing = standing_of(one)
         standing = replace(standing, notes=tuple(notes[one.design, one.environment]))
-        parts = bool(design.tolerances) if tolerances is None else tolerances
         try:
             if one.motion == "steady" and standing.loudest is not None:
                 progress(f"advice for {one.design}, {one.environment}")
                 standing = _advised(standing, standing.loudest, design.rig, workers)
-            if one.motion == "steady" and parts:
+            if one.motion == "steady" and tolerances and design.tolerances:
                 progress(f"tolerances of {one.design}, {one.environment}")
                 standing = _with_parts(standing, design, stream, workers)
         except _FAILURES as error:

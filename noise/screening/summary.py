@@ -351,9 +351,8 @@ def _sure_words(one: Standing, mapped: DesignMap) -> list[str]:
             "each change was run from rest, from the running noise, and with 2 % less of it"
         )
     if one.parts is not None:
-        assumed = "assumed" if one.parts.assumed else "its"
         texts.append(
-            f"a part within {assumed} tolerances is noisy somewhere in its use with a probability "
+            f"a part within its tolerances is noisy somewhere in its use with a probability "
             f"of {one.parts.probability:.0%} ({one.parts.low:.0%} to {one.parts.high:.0%})"
         )
     return texts

@@ -128,7 +128,6 @@ _DESIGNS: Columns = {
         f"{name}_rad_s": lambda one, name=name: _short(one.worst(name))
         for name in ("v_crit1", "v_crit2", "v_crit2_high", *_MARGINS)
     },
-    "tolerances": lambda one: one.parts and ("assumed" if one.parts.assumed else "stated"),
     "p_noisy_part": lambda one: one.parts and round(one.parts.probability, 4),
     "p_noisy_part_low": lambda one: one.parts and round(one.parts.low, 4),
     "p_noisy_part_high": lambda one: one.parts and round(one.parts.high, 4),

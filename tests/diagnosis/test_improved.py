@@ -85,8 +85,8 @@ def test_an_improved_rig_says_from_what_it_is_and_how_sure(improved):
     assert 'base = "../../../rig.toml"' in text
     stated = {one.name: one for one in load_design(out / "improved.toml").tolerances}
     share = load_rig(out / "improved.toml").effects[0].parameters["share"]
-    assert abs(share - 0.4) <= 3.0 * 0.4 * stated["velocity_weakening.share"].first
-    assert 0.0 < stated["kinetic_torque"].first < 0.1
+    assert abs(share - 0.4) <= 3.0 * 0.4 * stated["velocity_weakening.share"].spread
+    assert 0.0 < stated["kinetic_torque"].spread < 0.1
 
 
 def test_the_page_names_the_improved_rig_and_what_to_call_next(improved):
