@@ -159,11 +159,6 @@ def _target(rig: Rig, name: str, where: str) -> str:
         owner = _FRICTION
     if dot and owner in owners:
         return f"{owner}.{key}"
-    if name.partition("_mm")[0] == "interference":
-        raise ParameterError(
-            f"{where}: {name} is an operating condition, not a property of the bushing; leave it "
-            "out and set it with --interference"
-        )
     # A full name of the bushing takes precedence over parameters of the same name.
     whole = [short for short, long in _LONG.items() if name in (short, long)]
     targets = whole or [f"{own}.{name}" for own, law in owners.items() if name in law.parameters]

@@ -7,7 +7,7 @@ writing follow from the declarations. Fields without a declaration are in no fil
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from difflib import get_close_matches
@@ -386,41 +386,29 @@ def table_of(obj: Any, *, whole: bool = False) -> dict[str, Any]:
     }
 
 
-def quantities(obj: Any) -> Iterator[tuple[Quantity, list[float]]]:
-    """Yield the declared quantities of an object and its parts, each with its values.
+def _quantities(
+    obj: Any, collected: dict[Quantity, list[float]] | None = None
+) -> dict[Quantity, list[float]]:
+    """Return the declared quantities of an object and its parts, each with its values.
 
     Values are in the unit of the key; infinite ones that have a word are left out.
-
-    Examples
-    --------
-    >>> from models.bushing import Sleeve
-    >>> [(one.key, values) for one, values in quantities(Sleeve(0.015, 0.0045, 0.04, 7e6))][:2]
-    [('inner_radius_mm', [15.0]), ('wall_mm', [4.5])]
     """
-    values: dict[Quantity, list[float]] = {}
-    _collect(obj, values)
-    yield from values.items()
-
-
-def _collect(obj: Any, collected: dict[Quantity, list[float]]) -> None:
-    """Add the quantities of an object and its parts to `collected`."""
+    collected = {} if collected is None else collected
     if isinstance(obj, tuple):
         for each in obj:
-            _collect(each, collected)
-    elif hasattr(obj, "quantities"):
-        for quantity, values in obj.quantities():
-            collected.setdefault(quantity, []).extend(values)
+            _quantities(each, collected)
     elif is_dataclass(obj) and not isinstance(obj, type):
         entries = declared(type(obj))
         for field in fields(obj):
             value, entry = getattr(obj, field.name), entries.get(field.name)
             quantity = getattr(entry, "value", entry)  # the value of a table by support
             if not isinstance(quantity, Quantity):
-                _collect(value, collected)
+                _quantities(value, collected)
                 continue
             values = value.values() if isinstance(value, Mapping) else (value,)
             stated = [x for x in values if not (x is None or (quantity.infinite and x == math.inf))]
             collected.setdefault(quantity, []).extend(map(quantity.of, stated))
+    return collected
 
 
 def remarks(obj: Any) -> tuple[str, ...]:
@@ -432,7 +420,7 @@ def remarks(obj: Any) -> tuple[str, ...]:
     >>> remarks(load_material_rig("fluorocarbon"))
     ()
     """
-    return tuple(text for one, values in quantities(obj) if (text := one.remark(*values)))
+    return tuple(text for one, values in _quantities(obj).items() if (text := one.remark(*values)))
 
 
 def refuse_impossible(obj: Any, where: str) -> None:
@@ -443,7 +431,7 @@ def refuse_impossible(obj: Any, where: str) -> None:
     ParameterError
         A value is out of bounds; the message begins with `where` and names it.
     """
-    for one, values in quantities(obj):
+    for one, values in _quantities(obj).items():
         for value in values:
             if not one.possible(value):
                 raise ParameterError(f"{where}: {one.key} = {value:g} must be {one.wanted}")

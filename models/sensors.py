@@ -11,7 +11,7 @@ recordings"`` the noise is estimated where there are recordings.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -21,31 +21,13 @@ from models.units import CHANNEL_UNITS
 
 FROM_RECORDINGS = "from recordings"
 
-_USUAL = {  # full scale, of the rig (Appendices B to E) and of the field; most noise
-    "torque": (0.05, 1e4, 0.5),  # +-102.5; cells of 0.1 Nm to 10 kNm
-    "acceleration": (5.0, 1e6, 5.0),  # +-977; sensors of 0.5 to 1e5 g
-    "pressure": (0.02, 2e4, 0.15),  # +-28.9; microphones to 180 dB
-    "angle": (1e-3, 1e4, 0.06),  # +-12.4
-    "speed": (0.1, 1e4, 0.5),
-    "force": (1.0, 1e6, 5.0),  # hammers of 20 N to 200 kN
+_ENTRIES = {
+    "noise": Quantity("noise", high=1e9, closed=True),
+    "full_scale": Quantity("range", low=1e-9, high=1e12),
+    "bits": Quantity("bits", unit="bit", low=2.0, high=32.0),
+    "antialias": Quantity("antialias_hz", unit="Hz", low=1.0, high=1e9),
 }
-"""Usual range and highest usual noise; the noise is ten steps of the rig's 12 bits (3.1.2)."""
-
-# Below half of 30 kHz at the rig (3.1.2); slips repeat above 100 Hz.
-_ANTIALIAS = Quantity("antialias_hz", 1.0, "Hz", 1.0, 1e9, (500.0, 1e5))
-SENSOR_QUANTITIES = {
-    kind: {
-        "full_scale": Quantity(f"range.{kind}", 1.0, unit, 1e-9, 1e12, _USUAL[kind][:2]),
-        "noise": Quantity(f"noise.{kind}", 1.0, unit, 0, 1e9, (0, _USUAL[kind][2]), closed=True),
-        "bits": Quantity("bits", 1.0, "bit", 2.0, 32.0, (8.0, 24.0)),
-        "antialias": _ANTIALIAS,
-    }
-    for kind, unit in CHANNEL_UNITS.items()
-}
-"""Quantities of a sensor by the names of its fields, by kind of channel."""
-
-_KEYS = {"noise": "noise", "full_scale": "range", "bits": "bits", "antialias": "antialias_hz"}
-"""Keys of the rig file's table, by the names of the fields."""
+"""Entries of the rig file's table, by the names of the fields."""
 
 
 @dataclass(frozen=True)
@@ -108,15 +90,6 @@ class Sensors:
     by_kind: Mapping[str, Sensor] = field(default_factory=dict)
     noise_from_recordings: bool = False
 
-    def quantities(self) -> Iterator[tuple[Quantity, list[float]]]:
-        """Yield the quantities that are stated, each with its values [unit of the key]."""
-        stated: dict[Quantity, list[float]] = {}
-        for kind, sensor in self.by_kind.items():
-            for name, quantity in SENSOR_QUANTITIES[kind].items():
-                if (value := getattr(sensor, name)) is not None:
-                    stated.setdefault(quantity, []).append(value)
-        yield from stated.items()
-
     def of(self, kind: str) -> Sensor:
         """Return the sensor of a kind of channel."""
         return self.by_kind.get(kind, _IDEAL)
@@ -162,10 +135,11 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
     0.050048828125
     """
     table = as_table(table, "sensors", where)
-    refuse_unknown(table, _KEYS.values(), where)
+    refuse_unknown(table, [entry.key for entry in _ENTRIES.values()], where)
     estimated = table.get("noise") == FROM_RECORDINGS
     stated: dict[str, dict[str, Any]] = {}
-    for name, key in _KEYS.items():
+    for name, quantity in _ENTRIES.items():
+        key = quantity.key
         entry = {} if key == "noise" and estimated else table.get(key, {})
         if not isinstance(entry, Mapping):
             ranges = {kind: s.full_scale for kind, s in base.by_kind.items()}
@@ -173,7 +147,8 @@ def read_sensors(table: Any, base: Sensors, where: str) -> Sensors:
             entry = _for_all(entry, name, [k for k, scale in ranges.items() if scale], where)
         refuse_unknown(entry, CHANNEL_UNITS, f"{where}, {key}")
         stated[name] = {
-            kind: SENSOR_QUANTITIES[kind][name].read(value, where) for kind, value in entry.items()
+            kind: replace(quantity, key=f"{key}.{kind}").read(value, where)
+            for kind, value in entry.items()
         }
     kinds = dict.fromkeys(kind for values in stated.values() for kind in values)
     own = Sensors(
@@ -195,7 +170,7 @@ def _for_all(value: Any, name: str, ranged: list[str], where: str) -> dict[str, 
         return dict.fromkeys(ranged or CHANNEL_UNITS, value)
     words = f'"{FROM_RECORDINGS}", or ' if name == "noise" else ""
     raise ParameterError(
-        f"{where}: {_KEYS[name]} = {value!r} must be {words}a table by channel, such as "
+        f"{where}: {_ENTRIES[name].key} = {value!r} must be {words}a table by channel, such as "
         "{ torque = 50 }"
     )
 
@@ -225,10 +200,10 @@ def sensors_table(sensors: Sensors) -> dict[str, Any]:
     {'range': {'torque': 102.5}, 'bits': {'torque': 12}}
     """
     table: dict[str, Any] = {}
-    for name, key in _KEYS.items():
+    for name, quantity in _ENTRIES.items():
         values = {kind: getattr(sensor, name) for kind, sensor in sensors.by_kind.items()}
         if stated := {kind: value for kind, value in values.items() if value is not None}:
-            table[key] = stated
+            table[quantity.key] = stated
     if sensors.noise_from_recordings:
         table["noise"] = FROM_RECORDINGS
     return table

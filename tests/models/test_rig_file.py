@@ -201,7 +201,6 @@ def fit(old, new):
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),
-        ('[change]\ninterference_mm = "x2"', ("operating condition", "--interference")),
         ('[change]\ncritical_torque = "x0.1"', ("critical_torque_Nm = 0.5892 is below",)),
         ('[change]\nslip_pulse.duration = "x2"', ("slip_pulse.duration", "as a number")),
         ('[change]\ndamping = "x2"\ndamping_Nms_rad = 0.1', ("damping is changed twice",)),
@@ -229,10 +228,7 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
 # Remarks
 
 
-def test_what_is_unusual_is_told(tmp_path):
-    text = "[sensors]\nrange = { torque = 2e5 }\nbits = 4\nantialias_hz = { pressure = 12 }"
-    found = remarks(loaded(tmp_path, text))
-    assert [line.split(" = ")[0] for line in found] == ["range.torque", "bits", "antialias_hz"]
+def test_what_is_unusual_is_told():
     rig = RIG.changed(critical_torque="x1000", kinetic_torque="x1000")
     assert [line.split(" = ")[0] for line in remarks(rig)] == [
         "critical_torque_Nm", "kinetic_torque_Nm",
