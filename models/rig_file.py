@@ -36,7 +36,7 @@ from models.schema import (
     table_of,
     toml_text,
 )
-from models.sensors import read_sensors, sensors_table
+from models.sensors import read_sensors
 
 if TYPE_CHECKING:
     from models.transfer_functions.measured import MeasuredResponse
@@ -339,9 +339,8 @@ def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> st
     notes : sequence of str
         Lines of comment at the top.
     base : str, optional
-        Rig file from which structure, responses, sensors and material are inherited. Without a base
-        the structure is written where it differs from the shipped bench; responses and sleeve are
-        not written.
+        Rig file from which structure, responses, sensors and material are inherited; by default
+        they are those of the shipped bench. The sleeve is not written.
 
     Returns
     -------
@@ -352,19 +351,11 @@ def rig_text(rig: Rig, notes: Sequence[str] = (), base: str | None = None) -> st
     >>> print(rig_text(load_material_rig("fluorocarbon-thesis")).splitlines()[0])
     name = "bench"
     """
-    structure = ("beams", "plate", "microphone")
-    if base is None:
-        bench = load_material_rig(_bench()["material"])
-        same = [name for name in structure if getattr(rig, name) == getattr(bench, name)]
-        front = {"name": rig.name, "material": rig.material}
-    else:
-        same, front = [*structure, "material"], {"name": rig.name, "base": base}
+    front = {"material": rig.material} if base is None else {"base": base}
     stated = {"effects": [], "assumed": [], **table_of(rig)}
-    stated |= {name: table_of(getattr(rig, name), whole=True) for name in structure}
-    table = front | {k: _rounded(v) for k, v in stated.items() if k not in (*same, "sleeve")}
-    if base is None and (sensors := sensors_table(rig.sensors)):
-        table["sensors"] = sensors
-    return toml_text(table, notes)
+    for key in ("name", "material", "beams", "plate", "microphone", "sleeve"):
+        stated.pop(key, None)
+    return toml_text({"name": rig.name} | front | _rounded(stated), notes)
 
 
 def changed_rig_text(

@@ -376,13 +376,13 @@ def read_table(
         raise ParameterError(f"{where}: {str(error).removeprefix(f'{name}: ')}") from None
 
 
-def table_of(obj: Any, *, whole: bool = False) -> dict[str, Any]:
-    """Return the table of an object's entries, without those at their default unless `whole`."""
+def table_of(obj: Any) -> dict[str, Any]:
+    """Return the table of an object's entries, without those at their default."""
     defaults = {field.name: field.default for field in fields(obj)}
     return {
         entry.key: entry.write(value)
         for name, entry in declared(type(obj)).items()  # type: ignore[arg-type]
-        if (value := getattr(obj, name)) is not None and (whole or value != defaults[name])
+        if (value := getattr(obj, name)) is not None and value != defaults[name]
     }
 
 

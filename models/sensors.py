@@ -189,21 +189,3 @@ def _checked(sensors: Sensors, where: str) -> Sensors:
             raise ParameterError(f"{where}: bits = {sensor.bits!r} must be a whole number")
         checked[kind] = replace(sensor, bits=bits)
     return replace(sensors, by_kind=checked)
-
-
-def sensors_table(sensors: Sensors) -> dict[str, Any]:
-    """Return the rig file's table of sensors, empty if all are ideal.
-
-    Examples
-    --------
-    >>> sensors_table(Sensors({"torque": Sensor(full_scale=102.5, bits=12)}))
-    {'range': {'torque': 102.5}, 'bits': {'torque': 12}}
-    """
-    table: dict[str, Any] = {}
-    for name, quantity in _ENTRIES.items():
-        values = {kind: getattr(sensor, name) for kind, sensor in sensors.by_kind.items()}
-        if stated := {kind: value for kind, value in values.items() if value is not None}:
-            table[quantity.key] = stated
-    if sensors.noise_from_recordings:
-        table["noise"] = FROM_RECORDINGS
-    return table

@@ -46,7 +46,7 @@ class Beforehand:
     stated : frozenset of str
         Keys of the file and of files that it is based on.
     structure : str, optional
-        Rig file, if it may have a structure of its own.
+        Rig file, if it may have a structure or sensors of its own.
     """
 
     rig: Rig
@@ -105,7 +105,7 @@ def known_beforehand(
     )
 
 
-_STRUCTURE = {"base", "beams", "plate", "microphone", "measured_response"}
+_STRUCTURE = {"base", "beams", "plate", "microphone", "measured_response", "sensors"}
 
 
 def _stated(content: Mapping[str, Any], folder: Path) -> set[str]:
