@@ -18,8 +18,7 @@ from sim.effects.effect import ActiveEffect, activated
 from sim.friction import friction_law
 from sim.parameters import resolve
 from sim.shaft import ShaftMotion
-from sim.solvers.contact_rates import N_MOTION
-from sim.solvers.contact_solver import LONGEST_STEP, ContactRun, Hook
+from sim.solvers.contact_solver import LONGEST_STEP, N_MOTION, ContactRun, Hook
 from sim.solvers.stick_slip import DIRECTION, advance_stick_slip, rest_state
 
 STICK_SPEED_SHARE = 0.05

@@ -17,7 +17,7 @@ w, with forces F_l and F_r at its ends, the left bushing carries F_l (1/2 + B / 
 F_r (1/2 - B / 2w), so wheels in opposite directions load a bushing with B / w times the force of a
 link. Where the load lifts the bar off a part of a bushing, its torques rise (`torque_gain`).
 
-Each bushing is the lumped model of `sim.solvers.contact_rates`, whose shaft is the bar at its
+Each bushing is the lumped model of `sim.solvers.contact_solver`, whose shaft is the bar at its
 place; its friction torque acts back on the bar. Only friction laws with an inner state are
 supported, since constant torques would need event location at each contact. Steps are those of
 `sim.solvers.tsitouras` with error control.
@@ -53,9 +53,14 @@ from sim.parameters import resolve
 from sim.plan import Plan, Setting, plan_run
 from sim.run import record_motions
 from sim.shaft import ShaftMotion, shaft_motion
-from sim.solvers import contact_rates as at
-from sim.solvers.contact_rates import contact_rates
-from sim.solvers.contact_solver import LONGEST_STEP, contact_record, hooks_record, n_variables
+from sim.solvers import contact_solver as at
+from sim.solvers.contact_solver import (
+    LONGEST_STEP,
+    contact_rates,
+    contact_record,
+    hooks_record,
+    n_variables,
+)
 from sim.solvers.tsitouras import ERROR, NODES, factor_of_step, fill_between, fill_stage
 
 LONGEST_SUSPENSION_RUN = 20.0

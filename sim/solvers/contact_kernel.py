@@ -6,6 +6,7 @@
 A step is repeated until its error is small enough. Where stick or slip ends within it, or a law's
 sliding reverses, its length is iterated until that happens at its end; the next step begins with
 the new right-hand side. Outputs are interpolated within the step that covers them.
+`sim.solvers.contact_solver` has the right-hand side and the records.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from numba import float64, int64, njit, types
 
 from models.compilation import COMPILED, PART
 from sim.contact import CRITICAL, KINETIC, STICKS
-from sim.solvers import contact_rates as at
+from sim.solvers import contact_solver as at
 from sim.solvers.tsitouras import (
     NODES,
     factor_of_step,

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from models.compilation import PART
-from sim.solvers.contact_rates import N_MOTION, N_STAGES
+from sim.solvers.contact_solver import N_MOTION, N_STAGES
 
 NODES = np.array([0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0, 1.0])
 """Nodes of the stages, in shares of the step."""
