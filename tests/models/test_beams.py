@@ -12,8 +12,8 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 
 from models.bench import Beams, Microphone
 from models.errors import ParameterError
-from models.radiation.beam_sound import beams_pressure, strip_section
 from models.radiation.rayleigh import SOUND_SPEED
+from models.radiation.rig_response import beams_pressure, strip_section
 from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,
