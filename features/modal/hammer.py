@@ -47,8 +47,6 @@ _SURE = 12.0  # times the median deviation of a part over the root of its length
 _PARTS = 8  # of a force, whose medians show a drift but not a short impact
 _LAST = 0.05  # share of a hit at its end
 _BESIDE = 1.5  # frequency ratio within which a null has neighbours
-_FINE = 1e-3  # steps of a converter, relative to the peak, that leave two neighbours unlike
-_EVEN = 1e-4  # difference of the flanks of a top that is sampled evenly about its middle
 _DIGITS = 9  # to which levels of a converter agree
 
 
@@ -316,9 +314,4 @@ def _flat_top(signal: NDArray[np.float64]) -> int:
     top = signal >= peak * (1 - 1e-12)
     close = (signal >= peak * (1 - max(NEAR, 1.5 * step))) & ~top
     n_top, n_close = int(top.sum()), int(close.sum())
-    if n_top == 2 and n_close == 0 and step < _FINE:
-        first, second = (int(i) for i in np.flatnonzero(top))
-        flanks = signal[max(first - 1, 0)], signal[min(second + 1, signal.size - 1)]
-        uneven = abs(flanks[0] - flanks[1]) > max(10.0 * step, _EVEN) * peak
-        return n_top if second == first + 1 and uneven else 0
     return n_top if n_top > 2 and n_top > FLAT * n_close else 0

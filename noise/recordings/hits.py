@@ -1,7 +1,7 @@
 """Reader of hammer hits from recordings with a force channel or tables of numbers.
 
 A table (NPY or CSV) has time [s], force [N] and response as three rows or three columns, as its
-shape tells. Headings of a CSV file may state other units or another order.
+shape tells. Headings of a CSV file may state other units.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def _table(path: Path) -> tuple[NDArray[np.float64], str]:
             table = read_table(path)
             values = table.values
             if values.shape[1] == len(_ROLES):
-                values, kind = _in_order(path, table)
+                values, kind = _in_si(path, table)
     if values.ndim != 2 or len(_ROLES) not in values.shape:
         raise RecordingError(
             f"{path}: has shape {np.shape(values)}, expected three rows or columns: time, force, "
@@ -187,31 +187,21 @@ def _table(path: Path) -> tuple[NDArray[np.float64], str]:
     return rows, kind
 
 
-def _in_order(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str]:
-    """Return the columns of a table in order and in SI, and the stated kind of response."""
-    kind = ""
-    by_role: dict[str, NDArray[np.float64]] = {}
-    unnamed = []
-    for name, unit, column in zip(table.names, table.units, table.values.T, strict=True):
+def _in_si(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str]:
+    """Return the columns of a table in SI, and the stated kind of response."""
+    columns, quantity = [], ""
+    expected = (("time",), ("force",), RESPONSES)
+    headings = zip(table.names, table.units, table.values.T, expected, strict=True)
+    for name, unit, column, allowed in headings:
         matches = (q for start, q in _QUANTITY_OF_NAME.items() if name.lower().startswith(start))
         quantity, factor = quantity_of_unit(unit) or ("" if unit else next(matches, ""), 1.0)
-        if (unit and not quantity) or quantity not in ("", "time", "force", *RESPONSES):
+        if (unit and not quantity) or quantity not in ("", *allowed):
             raise RecordingError(
                 f"{path}: column {name!r} is {quantity or 'in'} {unit!r}, expected time, force and "
-                "acceleration or pressure, in units such as s, N, m/s^2, g, Pa"
+                "acceleration or pressure in this order, in units such as s, N, m/s^2, g, Pa"
             )
-        kind = quantity if quantity in RESPONSES else kind
-        role = "response" if quantity in RESPONSES else quantity
-        if role in by_role:
-            raise RecordingError(
-                f"{path}: {name!r} is a second column of {role}, expected time, force, response"
-            )
-        if role:
-            by_role[role] = factor * column
-        else:
-            unnamed.append(column)
-    by_role |= zip((role for role in _ROLES if role not in by_role), unnamed, strict=True)
-    return np.column_stack([by_role[role] for role in _ROLES]), kind
+        columns.append(factor * column)
+    return np.column_stack(columns), quantity
 
 
 def _rate(path: Path, time: NDArray[np.float64]) -> float:

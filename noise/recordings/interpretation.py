@@ -115,9 +115,7 @@ def interpret(
         )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
     channels, calibrated = _calibrated(path, raw, sidecar, options, notes)
-    # The sidecar takes precedence over the file.
-    stated = {key: value for key, value in vars(sidecar.condition).items() if value is not None}
-    return Metadata(channels, replace(raw.condition, **stated), calibrated, tuple(notes))
+    return Metadata(channels, sidecar.condition, calibrated, tuple(notes))
 
 
 def _by_track(

@@ -1,9 +1,8 @@
 """Unwrapping of shaft angles, and comparison of measured with logged speeds.
 
-Encoders give 0 to 2 pi, 0 to 360 degrees, or a counter that overflows. The angle jumps where the
-step between two samples deviates by more than 2 rad from the median step. Jumps are unwrapped if
-all are the same number of whole turns, or if three or more have the same size; other jumps are
-noted and left as they are.
+Encoders give 0 to 2 pi, 0 to 360 degrees, or several turns. The angle jumps where the step between
+two samples deviates by more than 2 rad from the median step. Jumps are unwrapped if all are the
+same number of whole turns; other jumps are noted and left as they are.
 
 Median steps are computed over fixed stretches of a file, so that a part of a recording is identical
 bit for bit however it is read.
@@ -35,8 +34,6 @@ _DIGITS = 4
 
 _TURN = 2.0 * math.pi
 _NEAR = 0.1  # tolerance of whole turns [turns]: the speed changes during the jump
-_ALIKE = 0.02  # relative tolerance of the jumps of a counter
-_MANY = 3  # jumps of equal size that make a counter of any period
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,31 +102,16 @@ def find_turns(
         if not parts:
             continue
         indices, sizes = (np.concatenate(part) for part in zip(*parts, strict=True))
-        period, whole = _period(np.abs(sizes))
-        if not period:
+        turns = round(float(np.median(np.abs(sizes))) / _TURN)
+        if not turns or np.any(np.abs(np.abs(sizes) / _TURN - turns) >= _NEAR):
             notes.append(
                 f"{channels[row].name} jumps by {sizes[0]:.4g} rad at sample {indices[0]}"
                 f"{f' and at {sizes.size - 1} more' * (sizes.size > 1)}, not by whole turns; "
                 "speeds from it are wrong there"
             )
             continue
-        if not whole:
-            notes.append(
-                f"{channels[row].name} wraps after {period:.4g} rad, not after whole turns, and is "
-                "unwrapped; is it in rad?"
-            )
-        jumps.append((row, indices, np.cumsum(-np.sign(sizes) * period)))
+        jumps.append((row, indices, np.cumsum(-np.sign(sizes) * turns * _TURN)))
     return Unwrapping(tuple(jumps), tuple(notes))
-
-
-def _period(sizes: NDArray[np.float64]) -> tuple[float, bool]:
-    """Return the period of a wrapped angle [rad] (0 if there is none), and if it is whole turns."""
-    turns = round(float(np.median(sizes)) / _TURN)
-    if turns and bool(np.all(np.abs(sizes / _TURN - turns) < _NEAR)):
-        return turns * _TURN, True
-    mean = float(sizes.mean())
-    alike = bool(np.all(np.abs(sizes - mean) < _ALIKE * mean))
-    return (mean if alike and sizes.size >= _MANY else 0.0), False
 
 
 def agrees(measured: float, logged: float) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from models.condition import Condition
 from models.errors import RecordingError
 from models.recording import Channel
 
@@ -55,8 +54,6 @@ class RawRecording:
         Free text in the file, which may state a calibration.
     channels : tuple of Channel, optional
         Channels that the file states; samples are in their units.
-    condition : Condition
-        Condition that the file states.
     notes : tuple of str
         Notes for the user, one line each.
     """
@@ -69,7 +66,6 @@ class RawRecording:
     description: str = ""
     comment: str = ""
     channels: tuple[Channel, ...] | None = None
-    condition: Condition = field(default_factory=Condition)
     notes: tuple[str, ...] = ()
 
     def whole(self) -> NDArray[np.float64]:
@@ -79,10 +75,6 @@ class RawRecording:
             last = min(first + _BLOCK, self.n_samples)
             samples[:, first:last] = self.read(first, last)
         return samples
-
-
-Logged = tuple[Sequence["LoggedChannel"], Mapping[str, object]]
-"""Channels and properties of a logger file; the properties may state a condition."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +89,7 @@ class Format:
     open : callable, optional
         Context manager from a path to a `RawRecording`, for sound files.
     channels : callable, optional
-        Context manager from a path to channels and properties, for logger files.
+        Context manager from a path to channels, for logger files.
     library, extra : str
         Library of a logger format, and the extra that installs it.
     """
@@ -105,7 +97,7 @@ class Format:
     name: str
     endings: tuple[str, ...]
     open: Callable[[Path], AbstractContextManager[RawRecording]] | None = None
-    channels: Callable[[Path], AbstractContextManager[Logged]] | None = None
+    channels: Callable[[Path], AbstractContextManager[Sequence[LoggedChannel]]] | None = None
     library: str = ""
     extra: str = ""
 

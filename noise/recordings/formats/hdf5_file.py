@@ -5,12 +5,12 @@ HDF5 does not prescribe a layout. Datasets may have any name and depth, with an 
 (``rate_Hz``, ``rate``, ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``, or the
 step ``dt``), or follows from a dataset ``time`` in the same group. The start is ``t0``, ``start``
 or ``start_s``, the unit of the axis ``x_unit``. Packed numbers have ``scale_factor`` and
-``add_offset``. Conditions are attributes of the file. External datasets are not read.
+``add_offset``. External datasets are not read.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import zip_longest
@@ -24,7 +24,6 @@ from models.errors import RecordingError
 from models.units import split_unit
 from noise.recordings.formats import Format
 from noise.recordings.formats.logged import (
-    CONDITIONS,
     PACKING,
     Axis,
     LoggedChannel,
@@ -41,8 +40,8 @@ _DENSEST = 1032  # largest compression ratio of deflate
 
 
 @contextmanager
-def open_hdf5(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Open an HDF5 file and yield its channels and the conditions among its attributes.
+def open_hdf5(path: Path) -> Iterator[list[LoggedChannel]]:
+    """Open an HDF5 file and yield its channels.
 
     Raises
     ------
@@ -64,7 +63,7 @@ def open_hdf5(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
             for dataset in datasets
             if dataset.size > 0 and not is_time(_last(dataset), _text(path, dataset, _UNITS))
         ]
-        yield logged, _attributes(path, file, CONDITIONS)
+        yield logged
 
 
 FORMAT = Format("HDF5", (".h5", ".hdf5"), channels=open_hdf5, library="h5py", extra="hdf5")

@@ -121,8 +121,8 @@ def _convert(folder: str | Path, path: Path, target: Path, seconds: float) -> Ra
     memory = _MEMORY_LIMIT + 4 * path.stat().st_size
     _limit_memory(memory)
     try:
-        with file_format.channels(path) as (channels, properties):  # type: ignore[misc]
-            return convert(path, channels, properties, target)
+        with file_format.channels(path) as channels:  # type: ignore[misc]
+            return convert(path, channels, target)
     except RecordingError:
         raise
     except MemoryError:

@@ -26,15 +26,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.condition import CONDITION, Condition
 from models.errors import RecordingError, naming
 from models.recording import Channel
 from models.units import CHANNEL_UNITS, kind_of_unit, quantity_of_unit, split_unit
 from noise.recordings.formats import RawRecording
-from noise.recordings.sidecar import read_condition, sidecar_of
-
-CONDITIONS = (*(one.key for one in CONDITION.values()), "material")
-"""Properties of a file that state its operating condition, with the keys of a sidecar."""
+from noise.recordings.sidecar import sidecar_of
 
 SAME_RATE = 1e-6
 """Relative tolerance of equal sampling rates [-]."""
@@ -139,9 +135,7 @@ class _Row(NamedTuple):
         return samples
 
 
-def convert(
-    path: Path, logged: Sequence[LoggedChannel], properties: Mapping[str, object], target: Path
-) -> RawRecording:
+def convert(path: Path, logged: Sequence[LoggedChannel], target: Path) -> RawRecording:
     """Write the channels of a logger file in SI units as plain numbers.
 
     Parameters
@@ -150,8 +144,6 @@ def convert(
         The logger file; its sidecar lies beside it.
     logged : sequence of LoggedChannel
         Channels in the order of the file.
-    properties : mapping
-        Properties of the file, which may state conditions.
     target : Path
         Output file: samples in SI units as float64, channel by channel.
 
@@ -174,11 +166,11 @@ def convert(
     ... )
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     target = Path(folder) / "samples"
-    ...     raw = convert(Path("run.h5"), [arm], {"speed_rad_s": 5.0}, target)
+    ...     raw = convert(Path("run.h5"), [arm], target)
     ...     float(np.fromfile(target).max())
     0.001
-    >>> raw.channels[0].name, raw.rate, raw.condition.speed
-    ('torque', 50000.0, 5.0)
+    >>> raw.channels[0].name, raw.rate
+    ('torque', 50000.0)
     """
     if not logged:
         raise RecordingError(f"{path}: holds no channel of numbers")
@@ -232,7 +224,6 @@ def convert(
         fractional=False,
         read=_unreadable,
         channels=channels,
-        condition=stated_condition(properties, str(path)),
         notes=tuple(notes),
     )
 
@@ -477,51 +468,3 @@ def whole_rate(rate: float, same: float = SAME_RATE) -> float:
     """Round a sampling rate [Hz] to a close whole number: loggers store steps with few digits."""
     whole = float(round(rate))
     return whole if abs(whole - rate) <= same * rate else rate
-
-
-# --- the condition -------------------------------------------------------------------------------
-
-
-def stated_condition(properties: Mapping[str, object], where: str) -> Condition:
-    """Read the operating condition from the properties of a file.
-
-    Parameters
-    ----------
-    properties : mapping
-        Numbers may be texts; a support stiffness may be "fixed".
-    where : str
-        Name of the file in messages.
-
-    Raises
-    ------
-    RecordingError
-        A property with the key of a condition has an invalid value.
-
-    Examples
-    --------
-    >>> stated_condition({"speed_rad_s": "5.0", "operator": "JD"}, "run07.tdms").speed
-    5.0
-    """
-    entry: dict[str, object] = {}
-    for key in CONDITIONS:
-        value = properties.get(key)
-        if value is None:
-            continue
-        if isinstance(value, np.ndarray | np.generic) and value.size == 1:
-            value = value.item()
-        if isinstance(value, bytes):
-            value = value.decode("utf-8", "replace")
-        if isinstance(value, str) and key != "material":
-            fixed = value.strip().lower() in ("fixed", "null")
-            value = None if fixed else _number(value)
-        entry[key] = value
-    with naming("", RecordingError):
-        return read_condition(entry, "conditions", where)
-
-
-def _number(text: str) -> float | str:
-    """Return a text as a number if it is one."""
-    try:
-        return float(text)
-    except ValueError:
-        return text

@@ -1,18 +1,16 @@
 """Reader of MDF4 files (ASAM MDF, test vehicles and benches): the channels of all groups.
 
-The axis is the master channel of a group: time, an angle, a distance or an index. Conditions are
-among the common properties in the comment of the file. Files with samples marked as invalid are
-refused.
+The axis is the master channel of a group: time, an angle, a distance or an index. Files with
+samples marked as invalid are refused.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree as ET
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +28,8 @@ _QUANTITIES = ("", "time", "angle", "distance", "index")  # of a master channel
 
 
 @contextmanager
-def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Open an MDF4 file and yield its channels and the properties in its comment.
+def open_mdf(path: Path) -> Iterator[list[LoggedChannel]]:
+    """Open an MDF4 file and yield its channels.
 
     Raises
     ------
@@ -46,8 +44,7 @@ def open_mdf(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, obj
     with path.open("rb") as stream, MDF(stream) as file:
         groups = range(len(file.groups))
         logged = [channel for group in groups for channel in _group(file, group)]
-        comment = ET.fromstring(file.header.comment)
-        yield logged, {e.attrib["name"]: e.text or "" for e in comment.iter("e")}
+        yield logged
 
 
 FORMAT = Format("MDF", (".mdf", ".mf4"), channels=open_mdf, library="asammdf", extra="mdf")

@@ -2,14 +2,14 @@
 
 The axis comes from the waveform properties (``wf_increment``, ``wf_start_offset``,
 ``wf_start_time``, ``wf_xname``, ``wf_xunit_string``) or from a channel ``time`` in the same group.
-Units are in ``unit_string`` (or ``NI_UnitDescription``), conditions in the properties of the file.
+Units are in ``unit_string`` (or ``NI_UnitDescription``).
 Unknown types of scale are refused, because the library would return unscaled samples. Index files
 are ignored: they are redundant or wrong.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -33,8 +33,8 @@ _SCALES = (
 
 
 @contextmanager
-def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
-    """Open a TDMS file and yield its channels and properties.
+def open_tdms(path: Path) -> Iterator[list[LoggedChannel]]:
+    """Open a TDMS file and yield its channels.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def open_tdms(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, ob
                 for channel in group
                 if channel not in clocks and channel.dtype.kind != "M"
             ]
-        yield logged, file.properties
+        yield logged
 
 
 FORMAT = Format("TDMS", (".tdms",), channels=open_tdms, library="nptdms", extra="tdms")

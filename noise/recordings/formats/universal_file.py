@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from noise.recordings.formats.logged import Axis, LoggedChannel
 
 
 @contextmanager
-def open_universal_file(path: Path) -> Iterator[tuple[list[LoggedChannel], Mapping[str, object]]]:
+def open_universal_file(path: Path) -> Iterator[list[LoggedChannel]]:
     """Open a universal file and yield its time functions as channels.
 
     Raises
@@ -32,7 +32,7 @@ def open_universal_file(path: Path) -> Iterator[tuple[list[LoggedChannel], Mappi
         functions = read_uff_functions(path, TIME_RESPONSE)
     if not functions:
         raise RecordingError(f"{path}: holds no time functions (dataset 58, function type 1)")
-    yield [_channel(number, function) for number, function in enumerate(functions, start=1)], {}
+    yield [_channel(number, function) for number, function in enumerate(functions, start=1)]
 
 
 FORMAT = Format("UFF", UFF_ENDINGS, channels=open_universal_file, library="pyuff", extra="uff")
