@@ -114,13 +114,10 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
         try:
             hit, unit = read_hit(path, response=options.response, arm=options.arm)
             check_hit(hit)
-            if hits and hit.rate != hits[0].rate:
+            if hits and (hit.rate, unit) != (hits[0].rate, first_unit):
                 raise RecordingError(
-                    f"{path}: is sampled at {hit.rate:g} Hz, {hits[0].name} at {hits[0].rate:g} Hz"
-                )
-            if hits and unit != first_unit:
-                raise RecordingError(
-                    f"{path}: its response is in {unit}, that of {hits[0].name} in {first_unit}"
+                    f"{path}: is sampled at {hit.rate:g} Hz, with a response in {unit}; "
+                    f"{hits[0].name} at {hits[0].rate:g} Hz in {first_unit}"
                 )
         except RecordingError as error:
             refuse(error)
