@@ -153,7 +153,7 @@ def _run(arguments: list[str]) -> int:
         return _failed(f"unrecognized: {' '.join(unknown)}{advice} ({see})")
     set_verbosity(quiet=options.quiet, verbose=options.verbose)
     try:
-        return load_command(options.command).run(options)
+        return int(load_command(options.command).run(options))
     finally:
         set_verbosity()
 

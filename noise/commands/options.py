@@ -12,7 +12,7 @@ from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from models.errors import ParameterError, naming
 from models.schema import Quantity
@@ -184,7 +184,8 @@ class Option:
         return self.name.partition(" ")[0].removeprefix("--").replace("-", "_")
 
 
-class Group(NamedTuple):
+@dataclass(frozen=True)
+class Group:
     """Options under their own title."""
 
     title: str
