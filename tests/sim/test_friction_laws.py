@@ -19,7 +19,6 @@ T_CRIT, T_KIN = 10.7, 8.0
 STEP = 5e-6
 
 STRIBECK = {
-    "stribeck_exponential": lambda x: np.exp(-abs(x)),
     "stribeck_lorentzian": lambda x: 1.0 / (1.0 + x**2),
 }
 NAMES = tuple(name for name in LAWS if name not in {"coulomb", "lugre"})
