@@ -105,49 +105,13 @@ def signature(recording: Recording) -> Array:
     >>> values.shape == (len(NAMES),), bool(np.isfinite(values).all())
     (True, True)
     """
-    parts = {
-        kind: channel_signature(recording.samples[row], recording.rate, kind)
-        for kind in KINDS
-        if (row := recording.first(kind)) is not None
-    }
-    return joined_signature(parts)
-
-
-def channel_signature(signal: Array, rate: float, kind: str) -> Array:
-    """Describe one channel: its levels, and of a torque what its slips are like.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-        [unit of the channel]
-    rate : float
-        [Hz]
-    kind : str
-        Of `KINDS`.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Levels [Np], and of a torque ratios of its cycle [-].
-    """
-    levels = _levels(signal, rate, kind)
-    return np.concatenate([levels, _cycle(signal, rate)]) if kind == "torque" else levels
-
-
-def joined_signature(parts: Mapping[str, Array]) -> Array:
-    """Join what `channel_signature` gave of the channels of a recording; NaN where one is missing.
-
-    Examples
-    --------
-    >>> joined_signature({}).shape == (len(NAMES),)
-    True
-    """
     values = np.full(len(NAMES), np.nan)
     for i, kind in enumerate(KINDS):
-        if kind in parts:
-            values[i * _N_BANDS : (i + 1) * _N_BANDS] = parts[kind][:_N_BANDS]
-    if "torque" in parts:
-        values[len(KINDS) * _N_BANDS :] = parts["torque"][_N_BANDS:]
+        if (row := recording.first(kind)) is not None:
+            signal, rate = recording.samples[row], recording.rate
+            values[i * _N_BANDS : (i + 1) * _N_BANDS] = _levels(signal, rate, kind)
+            if kind == "torque":
+                values[len(KINDS) * _N_BANDS :] = _cycle(signal, rate)
     return values
 
 

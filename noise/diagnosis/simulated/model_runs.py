@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -19,11 +18,11 @@ from numpy.typing import NDArray
 
 from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
-from models.recording import Recording
+from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
 from noise.base.arrays import Array
-from noise.diagnosis.gap import KINDS, channel_signature, joined_signature
+from noise.diagnosis.gap import KINDS, signature
 from noise.diagnosis.simulated.repeats import (
     Scatter,
     condition_key,
@@ -61,11 +60,8 @@ _COARSE = 2e-5
 _CACHED = 24
 """Responses and signals in the cache."""
 
-_SIGNATURES = 4000
-"""Channels in the cache."""
-
-_ROOM = 3e8
-"""Motions in the cache; the outputs of one of a second at 90 kHz take 1.4e6 [byte]."""
+_ROOM, _BYTES = 6e8, 72
+"""Motions in the cache, and a sample of one [byte]; one of a second at 90 kHz takes 6.5e6."""
 
 
 OFFSETS = (
@@ -156,7 +152,6 @@ class ModelRuns:
     _changed: _Cache[Changed] = field(init=False, default_factory=lambda: _Cache())
     _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
     _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
-    _parts: _Cache[Array] = field(init=False, default_factory=lambda: _Cache(_SIGNATURES))
 
     def __post_init__(self) -> None:
         self.transfer_functions = TransferFunctionCache(self.rig, self.library)
@@ -183,7 +178,7 @@ class ModelRuns:
         scatter = scatter or Scatter()
         fine = DIAGNOSIS.rate(template.rate)
         effects = self._active(model)
-        signals = self._radiated(model, effects, template, fine, seed, scatter)[1]
+        signals = self._radiated(model, effects, template, fine, seed, scatter)
         signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
         return record(
             signals, template.rate, template.condition, np.random.default_rng([seed, 3]), scatter,
@@ -212,26 +207,20 @@ class ModelRuns:
         """
         effects, fine = self._active(model), DIAGNOSIS.rate(template.rate)
         through = Acquisition(rate=template.rate, sensors=self.rig.sensors)
-        key, signals = self._radiated(model, effects, template, fine, seed, _EXACT)
+        signals = self._radiated(model, effects, template, fine, seed, _EXACT)
         read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
 
-        def part(kind: str) -> Array:
+        decimation = DIAGNOSIS.decimation(template.rate)
+        kinds = [kind for kind in KINDS if template.first(kind) is not None]
+        rows = []
+        for kind in kinds:
             sensor = through.sensors.of(kind)
-            decimation = DIAGNOSIS.decimation(template.rate)
-            sampled = decimate_sensed(read[kind], decimation, fine, sensor)
+            row = decimate_sensed(read[kind], decimation, fine, sensor)
             if sensor != Sensor():
-                sampled = digitise(sampled, kind, through, np.random.default_rng([seed, 3]))
-            return channel_signature(sampled, template.rate, kind)
-
-        parts = {}
-        for kind in KINDS:
-            if template.first(kind) is None:
-                continue
-            untouched = read[kind] is signals[kind]
-            parts[kind] = (
-                self._parts.get((key, kind), partial(part, kind)) if untouched else part(kind)
-            )
-        return joined_signature(parts)
+                row = digitise(row, kind, through, np.random.default_rng([seed, 3]))
+            rows.append(row)
+        channels = tuple(Channel(kind) for kind in kinds)
+        return signature(replace(template, samples=np.stack(rows), channels=channels))
 
     def _active(self, model: Model) -> list[ActiveEffect]:
         active = [self.active(spec) for spec in with_effects(self.rig, model.effects).effects]
@@ -254,16 +243,14 @@ class ModelRuns:
         fine: float,
         seed: int,
         scatter: Scatter,
-    ) -> tuple[object, Signals]:
-        """Return signals before the sensors, and what tells them from others."""
+    ) -> Signals:
+        """Return signals before the sensors."""
         on_paths = [a for a in effects if a.effect.chain is not None or a.effect.force is not None]
         on_motion = [
             a for a in effects if a.effect.contact is not None or a.effect.drive is not None
         ]
-        whole = any(a.effect.force is not None for a in on_paths)
         at_rest = (condition_key(template), template.condition.temperature)
-        of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion), whole)
-        key = (*of_motion, _key(on_paths))
+        of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion))
 
         def radiated() -> Signals:
             factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
@@ -274,19 +261,17 @@ class ModelRuns:
             plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
             tolerance = _COARSE if scatter == _EXACT else None
 
-            def moved() -> Motion:
-                motion = repeat_motion(plan, np.random.default_rng([seed, 1]), tolerance)
-                return motion if whole else _sensed_of(motion)
-
-            arrays = 9 if whole else 2
-            self._motions.most = int(_ROOM / (8 * arrays * (plan.n_settling + plan.n_recorded)))
-            motion = self._motions.get(of_motion, moved)
+            self._motions.most = int(_ROOM / (_BYTES * (plan.n_settling + plan.n_recorded)))
+            motion = self._motions.get(
+                of_motion,
+                lambda: repeat_motion(plan, np.random.default_rng([seed, 1]), tolerance),
+            )
             changes, paths = self._changes(plan, on_paths)
             at_condition = self.transfer_functions.at(plan.interference, plan.support_stiffness)
             sound = radiated_sound(motion, plan, self.rig, at_condition, changes, paths, on_paths)
             return sensor_signals(motion, sound, plan.n_settling)
 
-        return key, self._signals.get(key, radiated)
+        return self._signals.get((*of_motion, _key(on_paths)), radiated)
 
     def _changes(self, plan: Plan, effects: Sequence[ActiveEffect]) -> Changed:
         """Tell what effects change about the ways from the torque, and the ways of pulses."""
@@ -305,19 +290,6 @@ class ModelRuns:
             return chain_changes(plain, changed, length), changed
 
         return self._changed.get((*at, plan.rate, length, _key(effects)), made)
-
-
-def _sensed_of(motion: Motion) -> Motion:
-    """Return a motion without what is neither sensed nor makes a sound; that is zero."""
-    nothing = np.broadcast_to(0.0, motion.torque.shape)
-    sensed = {"torque": motion.torque.copy(), "shaft_angle": motion.shaft_angle}
-    return replace(motion, **(dict.fromkeys(_UNSENSED, nothing) | sensed))
-
-
-_UNSENSED = (
-    "friction_torque", "shaft_speed", "interface_angle", "interface_speed", "clamp_angle",
-    "clamp_speed",
-)  # fmt: skip
 
 
 class _Cache(Generic[T]):
