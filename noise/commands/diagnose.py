@@ -80,7 +80,7 @@ def _read(options: Namespace, progress: Steps) -> tuple[Case, Mapping[str, Effec
 
 def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -> None:
     """Print the answer, and its notes that have not been printed."""
-    from noise.diagnosis.text.sentences import answer, fit_sentence, strength_sentence
+    from noise.diagnosis.sentences import answer, fit_sentence, strength_sentence
 
     for sentence in answer(diagnosis):
         say(sentence)

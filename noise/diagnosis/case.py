@@ -18,7 +18,7 @@ from models.recording import Recording
 from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
-from noise.diagnosis.bench.channels import length_unit, misplaced_torque
+from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.check import refuse_unusable
 from noise.diagnosis.gap import KINDS
 from noise.diagnosis.prepare import measured_speed, prepared, shortest
@@ -339,11 +339,9 @@ def usable(recording: Recording, rig: Rig) -> Recording:
     interference, support = condition.interference, condition.support_stiffness
     low, high = rig.interference_range
     if not low * (1.0 - _SAME) <= interference <= high * (1.0 + _SAME):
-        unit = length_unit(interference, low, high)
-        wanted = f"; is it in {unit}?" if unit else ""
         raise ParameterError(
             f"interference_mm = {1e3 * interference:g} lies outside the fits of the rig file, "
-            f"{1e3 * low:g} to {1e3 * high:g}{wanted}"
+            f"{1e3 * low:g} to {1e3 * high:g} mm"
         )
     known = [m.support_stiffness for m in rig.measured]
     if known and not any(same_support(support, k) for k in known):

@@ -40,7 +40,7 @@ from noise.diagnosis.causes.verdict import (
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
 from noise.diagnosis.gap import KINDS
 from noise.diagnosis.outcome import Agreement, Diagnosis, EffectFinding, StageFinding
-from noise.diagnosis.text.sentences import AGREES
+from noise.diagnosis.sentences import AGREES
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -260,16 +260,6 @@ class FirstAnswer:
         """Numbers of the recordings, and of simulated repeats."""
         return self.comparison.table
 
-    def with_hypotheses(self, hypotheses: Mapping[Hypothesis, float]) -> FirstAnswer:
-        """Return the answer by other probabilities of hypotheses; each cause's follow from them."""
-        single = marginals(hypotheses)
-        return replace(
-            self,
-            hypotheses=hypotheses,
-            probabilities={n: single.get(n, 0.0) for n in {**self.probabilities, **single}},
-            verdict=likeliest({h: p for h, p in hypotheses.items() if h}),
-        )
-
 
 def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:
     """Return the effects of a rig file that are not proposed again.
@@ -349,9 +339,14 @@ def first_answer(
     if chance is not None and chance > UNUSUAL and not needs:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
     flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
-    unlearned = tuple(filter(None, (rough, poor)))
-    answer = FirstAnswer(comparison, gap, {}, probabilities, (), (), unlearned, flat)
-    answer = answer.with_hypotheses(hypotheses)
-    if not needs:
-        return replace(answer, verdict=())
-    return replace(answer, suspected=tuple(n for n, p in again.items() if p >= _SUSPECTED))
+    single = marginals(hypotheses)
+    return FirstAnswer(
+        comparison,
+        gap,
+        hypotheses,
+        {name: single.get(name, 0.0) for name in {**probabilities, **single}},
+        likeliest({h: p for h, p in hypotheses.items() if h}) if needs else (),
+        tuple(n for n, p in again.items() if p >= _SUSPECTED) if needs else (),
+        tuple(filter(None, (rough, poor))),
+        flat,
+    )

@@ -298,8 +298,7 @@ class Diagnosis:
         matplotlib.axes.Axes
         """
         from models.drawing import BLUE, GREY, axes_or_new
-        from noise.diagnosis.text.sentences import headline
-        from noise.diagnosis.text.words import cause_of, percent
+        from noise.diagnosis.sentences import cause_of, headline, percent
 
         causes = sorted(self.probabilities.items(), key=lambda item: -item[1])[:_DRAWN]
         named = self.verdict or ("none",)
@@ -363,7 +362,7 @@ def as_json(diagnosis: Diagnosis, improved: str | None = None) -> dict[str, Any]
     improved : str, optional
         Name of the file of the improved rig.
     """
-    from noise.diagnosis.text.sentences import answer, headline
+    from noise.diagnosis.sentences import answer, headline
 
     words = {"headline": headline(diagnosis), "sentences": answer(diagnosis)}
     return {**_plain(diagnosis, _USUAL), "improved": improved, **words}

@@ -24,31 +24,29 @@ from noise.diagnosis.outcome import (
     EffectFinding,
     as_json,
 )
-from noise.diagnosis.text.sentences import (
-    agreement_sentence,
-    answer,
-    closed_words,
-    fit_sentence,
-    headline,
-    is_named,
-    parameters_off,
-    strength_sentence,
-    strength_words,
-)
-from noise.diagnosis.text.words import (
+from noise.diagnosis.sentences import (
     NOT_DETERMINED,
     STAGES,
+    agreement_sentence,
+    answer,
     begins,
     cause_of,
+    closed_words,
     evidence,
     finding_of,
+    fit_sentence,
     gap_number,
+    headline,
+    is_named,
     joined,
     number,
     p_number,
     parameter_name,
+    parameters_off,
     percent,
     stage_of_effect,
+    strength_sentence,
+    strength_words,
 )
 from noise.pages import blocks as b
 from noise.pages.clips import Clip, Entry

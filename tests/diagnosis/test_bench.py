@@ -13,7 +13,7 @@ from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case, read_case
 from noise.diagnosis.diagnose import diagnose, diagnose_case
 from noise.diagnosis.outcome import as_json
-from noise.diagnosis.text.sentences import answer
+from noise.diagnosis.sentences import answer
 from sim.run import simulate
 from tests.helpers.small_rigs import RIG, at, only, run, write_case
 from tests.helpers.wrong_benches import WRONG_BENCHES

@@ -123,7 +123,7 @@ def test_noise_that_the_torque_does_not_explain_is_incoherent_in_its_band_alone(
         butter(6, [low * 1.05, high / 1.05], "band", fs=RATE, output="sos"), more
     )
     numbers, _ = path_summary(x, x + more, RATE, np.empty(0))
-    seen = {i: numbers[f"incoherent_{i}"] for i in band_bins(RATE).numbers}
+    seen = {i: numbers[f"incoherent_{i}"] for i in band_bins(RATE)[0]}
     assert max(seen, key=seen.get) == 9
     assert all(seen[9] - seen[i] > 2.0 for i in seen if abs(i - 9) > 1)
 

@@ -79,6 +79,13 @@ def test_the_quick_answer_has_the_contracts_keys(answered):
     assert all(effect["closed"] is None for effect in told["effects"])
 
 
+def test_clipping_of_the_sound_is_a_gap_of_its_sensor(tmp_path):
+    values = {"amount": 0.7, "pressure": 1.0, "torque": 0.0, "acceleration": 0.0}
+    found = diagnose(*write_case(tmp_path, _recordings(("clipping", values))), quick=True)
+    gaps = {stage: finding.gap for stage, finding in found.stages.items()}
+    assert max(gaps, key=gaps.get) == "measurement"
+
+
 def test_hum_as_it_comes_is_no_uneven_drive(tmp_path):
     """An encoder picks up none: what the cables of the others do is no matter of the shaft."""
     data, rig = write_case(tmp_path, _recordings(("mains_hum", {})))

@@ -38,10 +38,3 @@ def test_what_nothing_tells_is_asked_for():
     ) as no:
         usable(recorded, several)
     assert '"interference_mm" (of the rig file: 0.279, 0.3)' in str(no.value)
-
-
-def test_a_length_in_another_unit_is_asked_about():
-    recorded = run(at(0.8))
-    metres = replace(recorded.condition, interference=0.279e-6)
-    with pytest.raises(ParameterError, match=r"is it in m\?"):
-        usable(replace(recorded, condition=metres), RIG)

@@ -8,18 +8,19 @@ import pytest
 from hypothesis import given, strategies as st
 
 from noise.diagnosis.outcome import Agreement, Remainder
-from noise.diagnosis.text.sentences import (
+from noise.diagnosis.sentences import (
     AGREES,
+    CAUSES,
     agreement_sentence,
     answer,
     fit_sentence,
     headline,
     location_sentence,
     parameters_off,
+    percent,
     strength_sentence,
     verdict_sentence,
 )
-from noise.diagnosis.text.words import CAUSES, percent
 from sim.effects import EFFECTS
 from tests.helpers.made_diagnoses import SLIGHT, none, one_effect, pressure_alone, unknown
 

@@ -13,7 +13,7 @@ import pytest
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 from noise.diagnosis.outcome import Diagnosis, Illustration, StageFinding, as_json
-from noise.diagnosis.text.sentences import verdict_sentence
+from noise.diagnosis.sentences import verdict_sentence
 from noise.pages.diagnosis import (
     parameter_rows,
     ranked_causes,

@@ -15,8 +15,7 @@ from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
 from noise.base.labels import LABELS, MAP_LABELS, NAMED, PERSISTS
 from noise.diagnosis.gap import closed_fraction
 from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
-from noise.diagnosis.text.sentences import AGREES, answer, fit_sentence, strength_sentence
-from noise.diagnosis.text.words import finding_of
+from noise.diagnosis.sentences import AGREES, answer, finding_of, fit_sentence, strength_sentence
 from noise.identification.outcome import Identification, LawScore, Number
 from noise.labels.summary import result_lines
 from noise.pages.cards import draw_entries

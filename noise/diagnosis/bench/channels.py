@@ -65,30 +65,6 @@ def unit_of(kind: str, factor: float, within: float = _EXACT) -> str:
     return units[nearest] if nearest <= within else ""
 
 
-def length_unit(stated: float, low: float, high: float) -> str:
-    """Return the unit in which a length outside its range was stated.
-
-    Parameters
-    ----------
-    stated, low, high : float
-        Stated length and limits of its range [m].
-
-    Returns
-    -------
-    str
-        Unit; empty if no unit brings the length into the range.
-
-    Examples
-    --------
-    >>> length_unit(0.279e-6, 0.178e-3, 0.381e-3), length_unit(0.5e-3, 0.178e-3, 0.381e-3)
-    ('m', '')
-    """
-    units = {"m": 1e3, "um": 1e-3, "inches": 25.4, "cm": 10.0}
-    return next(
-        (unit for unit, x in units.items() if low <= x * stated * 1.001 <= high * 1.002), ""
-    )
-
-
 def factor_words(factor: float) -> str:
     """Return the words for a quantity that is wrong by a factor [-].
 
@@ -322,18 +298,15 @@ _RISING = 0.5
 
 def swapped_outputs(levels: Sequence[Levels]) -> str:
     """Return a finding if acceleration and pressure are swapped; otherwise empty."""
-    crossed, straight = [], []
-    for one in _slipping(levels):
-        if ("acceleration", "pressure") not in one.paths:
-            continue
-        crossed.append([one.paths[k] for k in _CROSSED])
-        straight.append([one.paths[k] for k in _STRAIGHT])
-    if not crossed:
+    paths = [one.paths for one in _slipping(levels) if _CROSSED[0] in one.paths]
+    if not paths:
         return ""
-    log = np.abs(np.log([[fit.gain + 1e-12 for fit in pair] for pair in (*crossed, *straight)]))
-    gains = np.median(log.max(axis=1).reshape(2, -1), axis=1)
-    follows = np.median([min(abs(fit.alike) for fit in pair) for pair in crossed])
-    if follows > _ALIKE and gains[0] < math.log(3.0) and gains[1] > math.log(6.0):
+    own, other = (
+        float(np.median([max(abs(math.log(p[k].gain + 1e-12)) for k in keys) for p in paths]))
+        for keys in (_STRAIGHT, _CROSSED)
+    )
+    follows = np.median([min(abs(p[k].alike) for k in _CROSSED) for p in paths])
+    if follows > _ALIKE and other < math.log(3.0) and own > math.log(6.0):
         return "channels acceleration and pressure look swapped"
     return ""
 
@@ -429,19 +402,16 @@ def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[st
     both = [i for i in own if i in beside]
     if both and abs(math.log(scale * float(np.median([beside[i] for i in both])))) < math.log(3.0):
         gains.append(np.array([own[i] / beside[i] for i in both]))  # independent of the torque
-    for each in gains:
-        if each.size >= least > 0:
+    series = [(each, least, _EXACT, *_STEADY) for each in gains]
+    swinging = [fit.strength for one, fit in having if one.swing > _SWINGING_WELL * scale]
+    strengths = scale * np.maximum(swinging, 1e-12)
+    series.append((strengths, least + (len(having) > 2), *_STRENGTH))
+    for each, fewest, exact, steady, share in series:
+        if each.size >= max(fewest, 1):
             factor = float(np.median(each))
-            steady = np.mean(np.abs(np.log(each / factor)) < _STEADY[0]) >= _STEADY[1]
-            if steady and (unit := unit_of(kind, factor)):
+            is_steady = np.mean(np.abs(np.log(each / factor)) < steady) >= share
+            if is_steady and (unit := unit_of(kind, factor, exact)):
                 return unit, factor
-    swinging = [fit for one, fit in having if one.swing > _SWINGING_WELL * scale]
-    if len(swinging) >= max(least, 1) + (len(having) > 2):
-        strengths = scale * np.array([max(fit.strength, 1e-12) for fit in swinging])
-        factor = float(np.median(strengths))
-        steady = np.mean(np.abs(np.log(strengths / factor)) < _STRENGTH[1]) >= _STRENGTH[2]
-        if steady and (unit := unit_of(kind, factor, _STRENGTH[0])):
-            return unit, factor
     return "", 1.0
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,12 +51,12 @@ def band_levels(x: Array, rate: float) -> dict[str, float]:
     >>> max(levels, key=levels.get)  # from 350 to 500 Hz
     'band_6'
     """
-    spectra, bands = segment_spectra(x, segment_frequency(rate)[0]), band_bins(rate)
-    sums = band_sums(powers(spectra).mean(axis=0), bands.first, bands.last)
-    power = sums / (bands.last - bands.first)
+    spectra = segment_spectra(x, segment_frequency(rate)[0])
+    numbers, first, last = band_bins(rate)
+    power = band_sums(powers(spectra).mean(axis=0), first, last) / (last - first)
     return {
         f"band_{i}": level
-        for i, level in zip(bands.numbers, (0.5 * np.log(power + 1e-14)).tolist(), strict=True)
+        for i, level in zip(numbers, (0.5 * np.log(power + 1e-14)).tolist(), strict=True)
     }
 
 
@@ -132,24 +131,8 @@ def band_sums(values: Array, first: NDArray[np.int64], last: NDArray[np.int64]) 
     )
 
 
-class Bands(NamedTuple):
-    """Bands that a rate reaches.
-
-    Parameters
-    ----------
-    numbers : tuple of int
-        From 1.
-    first, last : ndarray of int, shape (n_bands,)
-        First bin of `segment_frequency` that lies in each, and first after it.
-    """
-
-    numbers: tuple[int, ...]
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
-
-
 @lru_cache(maxsize=8)
-def band_bins(rate: float) -> Bands:
+def band_bins(rate: float) -> tuple[tuple[int, ...], NDArray[np.int64], NDArray[np.int64]]:
     """Find which bins lie in each of the bands that a rate reaches.
 
     Parameters
@@ -159,17 +142,20 @@ def band_bins(rate: float) -> Bands:
 
     Returns
     -------
-    Bands
+    numbers : tuple of int
+        Of the bands, from 1.
+    first, last : ndarray of int, shape (n_bands,)
+        First bin of `segment_frequency` that lies in each, and first after it.
 
     Examples
     --------
-    >>> band_bins(10e3).numbers[-1]
+    >>> band_bins(10e3)[0][-1]
     12
     """
     edges = np.searchsorted(segment_frequency(rate)[1], BAND_EDGES)
     reached = (BAND_EDGES[1:] < USABLE * rate) & (np.diff(edges) > 0)
     numbers = tuple((np.flatnonzero(reached) + 1).tolist())
-    return Bands(numbers, edges[:-1][reached], edges[1:][reached])
+    return numbers, edges[:-1][reached], edges[1:][reached]
 
 
 def bins_between(frequency: Array, band: tuple[float, float]) -> slice:
@@ -511,12 +497,12 @@ def _bins(band: tuple[float, float], length: int, rate: float) -> slice:
 
 def _by_band(pp: Array, mm: Array, pm: NDArray[np.complex128], left: Array, rate: float) -> Numbers:
     coherent = np.abs(pm) ** 2 / (pp * mm + 1e-30) * mm
-    bands = band_bins(rate)
-    rows = np.stack([pp, mm, coherent, left, pm.real, pm.imag])[:, : bands.last[-1]]
-    sums = np.add.reduceat(rows, bands.first, axis=1).T  # each band begins where one ends
+    band_numbers, first, last = band_bins(rate)
+    rows = np.stack([pp, mm, coherent, left, pm.real, pm.imag])[:, : last[-1]]
+    sums = np.add.reduceat(rows, first, axis=1).T  # each band begins where one ends
     numbers: Numbers = {}
     for i, n, (a, c, shared, wrong, real, imaginary) in zip(
-        bands.numbers, (bands.last - bands.first).tolist(), sums.tolist(), strict=True
+        band_numbers, (last - first).tolist(), sums.tolist(), strict=True
     ):
         a, c = a + 1e-30, c + 1e-30
         share = min(shared / c, 0.99999)

@@ -75,7 +75,7 @@ def illustrations_of(
 
 _LEFT = 2.0
 """Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are
-farther off (`noise.diagnosis.text.sentences.AGREES`)."""
+farther off (`noise.diagnosis.sentences.AGREES`)."""
 
 
 def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:

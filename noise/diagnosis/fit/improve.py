@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 CLOSED = 1.75
 """Floors up to which a gap counts as closed; assumed. Two of the simulated repeats that
-`noise.diagnosis.text.sentences.AGREES` tells of leave more in 9 %, mostly where one fell
+`noise.diagnosis.sentences.AGREES` tells of leave more in 9 %, mostly where one fell
 into another regime."""
 
 _UNDETERMINED = 1.4
