@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import json
 import sqlite3
-import uuid
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
@@ -32,7 +31,7 @@ _TIMEOUT = 30.0
 """Time that a writer waits for readers [s]."""
 
 _TABLES = """
-    create table if not exists call (version integer, identity text, begun text);
+    create table if not exists call (version integer, identity text);
     create table if not exists result (key text primary key, value text);
 """
 
@@ -70,7 +69,7 @@ class Journal:
         with self._database:
             self._database.execute("delete from call")
             self._database.execute("delete from result")
-            self._database.execute("insert into call values (?, ?, ?)", (*call, uuid.uuid4().hex))
+            self._database.execute("insert into call (version, identity) values (?, ?)", call)
 
     def get(self, key: str) -> list[Any] | None:
         """Return the values under a key; None if there are none."""
@@ -90,8 +89,9 @@ class Journal:
 
     def find(self, job: Job) -> JobResult | None:
         """Return the result of a recording; None if it is missing or the file has changed."""
-        values = self.get(_key(job))
-        return None if values is None else _valid_result(values, job)
+        identity, calibrated, rows = self.get(_key(job)) or (None, False, [])
+        unchanged = identity is not None and identity == file_identity(job.path)
+        return JobResult(rows, calibrated) if unchanged else None
 
     def add_result(self, job: Job, identity: list[int] | None, result: JobResult) -> None:
         """Store the result of a recording with the `file_identity` from before it was read."""
@@ -279,9 +279,3 @@ def _key(job: Job) -> str:
 def _encodable(text: str) -> str:
     """Return a key that SQLite can store: file names may be invalid UTF-8."""
     return text.encode("utf-8", "backslashreplace").decode()
-
-
-def _valid_result(values: list[Any], job: Job) -> JobResult | None:
-    """Return a stored result; None if the file has changed since."""
-    identity, calibrated, rows = values
-    return JobResult(rows, calibrated) if identity and identity == file_identity(job.path) else None

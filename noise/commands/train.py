@@ -6,7 +6,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from models.errors import ParameterError
 from noise.base.files import check_target
@@ -15,10 +15,7 @@ from noise.base.tables import TABLE_ENDINGS
 from noise.commands.options import Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from noise.classifier import Classifier
     from noise.training.classifier.samples import Sample
-
-    _Sample = TypeVar("_Sample")
 
 
 _SCORES = ("n", "accuracy", "macro_f1", "expected_calibration_error", "strangers_named")
@@ -41,26 +38,23 @@ def run(options: Namespace) -> int:
         progress("preparing")
         added, refused = _own_samples(options.add or ())
         progress("simulating training samples of the classifier")
-        classifier = _trained(options, added, progress)
+        from noise.training.classifier.fit import N_TRAINING, train
+
+        classifier = train(
+            seed=options.seed,
+            n_training=options.samples or N_TRAINING,
+            added=added,
+            progress=lambda samples, total: track(
+                samples, "simulating", total=total, unit="training sample"
+            ),
+            growing=partial(_growing, progress),
+        )
         classifier.save(options.out)
     say(f"trained: {_scores(classifier.card)}")
     if added:
         say(f"own recordings: {_own_scores(classifier.card.get('own'))}")
     report(options.out)
     return int(refused)
-
-
-def _trained(options: Namespace, added: Sequence[Sample], progress: Steps) -> Classifier:
-    """Return the trained classifier."""
-    from noise.training.classifier.fit import N_TRAINING, train
-
-    return train(
-        seed=options.seed,
-        n_training=options.samples or N_TRAINING,
-        added=added,
-        progress=_simulating,
-        growing=partial(_growing, progress),
-    )
 
 
 def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
@@ -87,11 +81,6 @@ def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
             "learned from"
         )
     return samples, bool(refusals)
-
-
-def _simulating(samples: Iterable[_Sample], total: int) -> Iterable[_Sample]:
-    """Show the progress of simulations."""
-    return track(samples, "simulating", total=total, unit="training sample")
 
 
 def _growing(progress: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
