@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from models.condition import Condition
 from models.errors import ParameterError
 from models.rig import Rig
-from models.units import ABSOLUTE_ZERO
+from models.schema import refuse_impossible
 from sim.effects import EFFECTS
 from sim.effects.effect import ActiveEffect, Effect, activated
 from sim.shaft import ConstantSpeed, ShaftMotion
@@ -135,13 +135,17 @@ class Plan:
     @property
     def condition(self) -> Condition:
         """Operating condition of the run; without a speed where it varies."""
-        return Condition(
-            speed=self.shaft.value if isinstance(self.shaft, ConstantSpeed) else None,
-            interference=self.interference,
-            support_stiffness=self.support_stiffness,
-            material=self.rig.material,
-            temperature=self.temperature,
-        )
+        return _condition(self)
+
+
+def _condition(at: "Setting | Plan") -> Condition:
+    return Condition(
+        speed=at.shaft.value if isinstance(at.shaft, ConstantSpeed) else None,
+        interference=at.interference,
+        support_stiffness=at.support_stiffness,
+        material=at.rig.material,
+        temperature=at.temperature,
+    )
 
 
 def plan_run(
@@ -183,7 +187,8 @@ def plan_run(
     shaft, temperature = setting.shaft, setting.temperature
     if settling is None:
         settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
-    _check(setting, seconds, settling, rate)
+    refuse_impossible(_condition(setting), "condition")
+    _check(seconds, settling, rate)
     rig = at_temperature(setting.rig, temperature)
     return Plan(
         rig=rig,
@@ -198,8 +203,7 @@ def plan_run(
     )
 
 
-def _check(setting: Setting, seconds: float, settling: float, rate: float) -> None:
-    interference, temperature = setting.interference, setting.temperature
+def _check(seconds: float, settling: float, rate: float) -> None:
     if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
         raise ParameterError(
             f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
@@ -209,12 +213,3 @@ def _check(setting: Setting, seconds: float, settling: float, rate: float) -> No
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
     if round(seconds * rate) < 2:
         raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
-    if not ABSOLUTE_ZERO <= temperature < 1e4:
-        raise ParameterError(
-            f"temperature = {temperature:g} degree Celsius must be at least absolute zero "
-            "(-273.15) and below 10000"
-        )
-    if not 0.0 < interference < 1e-2:
-        raise ParameterError(
-            f"interference = {1e3 * interference:g} mm must be above 0 and below 10"
-        )
