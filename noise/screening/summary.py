@@ -12,7 +12,6 @@ import numpy as np
 
 from noise.base.labels import PERSISTS
 from noise.screening.advice import Offer
-from noise.screening.design import axis_words
 from noise.screening.grid import Grid
 from noise.screening.mapping import BEYOND, REFINED, SIMULATED, UNCHANGED, DesignMap
 from noise.screening.vibration import Condition
@@ -89,21 +88,19 @@ def percent(share: float) -> str:
 
 
 def _range_words(mapped: DesignMap, name: str) -> str:
-    """Return the speeds of use between which a noise occurs, and where, if not everywhere."""
+    """Return where a noise occurs at most speeds of use, and between which, as text."""
     grid = mapped.grid
-    where = np.nonzero(mapped.label[..., grid.used] == name)
-    temperatures, supports, fits, columns = (np.unique(axis).tolist() for axis in where)
-    speed = np.array(grid.speed)[grid.used][columns]
-    words = [f"between {speed[0]:.5g} and {speed[-1]:.5g} rad/s"]
+    there = mapped.label[..., grid.used] == name
+    t, k, i = np.unravel_index(there.sum(axis=-1).argmax(), there.shape[:3])
+    speed = np.array(grid.speed)[grid.used][there[t, k, i]]
+    words = f"between {speed[0]:.5g} and {speed[-1]:.5g} rad/s"
     if speed.size == 1:
-        words = [f"at {speed[0]:.5g} rad/s"]
-    if len(fits) < len(grid.interference):
-        words.append(f"at {axis_words([1e3 * grid.interference[i] for i in fits])} mm")
-    if len(supports) < len(grid.support_stiffness):
-        words.append(f"at {axis_words([grid.support_stiffness[k] for k in supports])} Nm/rad")
-    if len(temperatures) < len(grid.temperature):
-        words.append(f"at {axis_words([grid.temperature[t] for t in temperatures])} °C")
-    return ", ".join(words)
+        words = f"at {speed[0]:.5g} rad/s"
+    if there.size == there.shape[-1]:
+        return words
+    where = condition_words(Condition(0.0, grid.interference[i], grid.support_stiffness[k]))
+    several = f", {grid.temperature[t]:g} °C" * (len(grid.temperature) > 1)
+    return f"most at {where}{several}: {words}"
 
 
 def condition_words(at: Condition | CriticalPoint) -> str:
