@@ -36,12 +36,6 @@ BATCH = (
 )
 
 
-def check_batch(options: Namespace) -> None:
-    """Refuse unusable options of a batch before the work."""
-    check_table_path(options.out)
-    check_target(options.out)
-
-
 def run_batch(
     options: Namespace,
     work: Work,
@@ -82,6 +76,7 @@ def run_batch(
     on_terminal = out is None and sys.stdout is not None and sys.stdout.isatty()
     show_summary = summary is not None and on_terminal
     check_table_path(out, work.columns)
+    check_target(out)
     work.prepare()
     results: dict[int, JobResult] = {}
     exit_code = 0

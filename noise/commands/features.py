@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from noise.commands.batch import BATCH, check_batch, run_batch
+from noise.commands.batch import BATCH, run_batch
 from noise.commands.options import CALIBRATION, full_scale_of
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ OPTIONS = (*BATCH, *CALIBRATION)
 
 def run(options: Namespace) -> int:
     """Compute the features and write the table."""
-    check_batch(options)
     from noise.batch.work import find_jobs
 
     work = FeatureExtraction(full_scale_of(options))

@@ -14,8 +14,8 @@ from models.errors import ParameterError
 from noise.base.files import check_target, locked
 from noise.base.labels import SURROUNDINGS
 from noise.base.progress import counted, note, report
-from noise.base.tables import TABLE_ENDINGS, write_table
-from noise.commands.batch import BATCH, check_batch, run_batch
+from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
+from noise.commands.batch import BATCH, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of
 
 if TYPE_CHECKING:
@@ -34,7 +34,8 @@ OPTIONS = (
 
 def run(options: Namespace) -> int:
     """Label the recordings and write the table."""
-    check_batch(options)
+    check_table_path(options.out)
+    check_target(options.out)
     _check_exports(options)
     if all(path.suffix.lower() in TABLE_ENDINGS for path in options.paths):
         return _from_tables(options)
