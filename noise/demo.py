@@ -19,8 +19,8 @@ from models.radiation.impulse_responses import convolve
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording
 from models.rig_file import load_material_rig
-from noise.audio.audio_file import write_audio
 from noise.audio.gain import QUIETEST_FULL_SCALE, common_full_scale
+from noise.audio.render import write_audio
 from noise.audio.sound import audible
 from noise.base.files import atomic, locked
 from noise.base.progress import say, track

@@ -296,14 +296,6 @@ def measured_rows(job: Job, segments: Sequence[Correction], before: Sequence[Row
             )
     except (BushingNoiseError, OSError):  # the correction counts without numbers, too
         return []
-    if len(measured) == len(segments):
-        return measured
-    # Of a part of the segments nothing tells the background; it is as `label` has found it.
-    over = _over_background(before)
-    for row in measured:
-        level, above = row["level_dba"], over.get(track(row))
-        if row["snr_dba"] is None and isinstance(level, float) and above is not None:
-            row["snr_dba"] = round(level - above, 2)
     return measured
 
 
@@ -337,13 +329,3 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
     numbers = [str(number) for number in range(1, len(by_track) + 1)]
     known = by_track and set(by_track) == set(numbers)
     return tuple(by_track[number] for number in numbers) if known else None
-
-
-def _over_background(rows: Sequence[Row]) -> dict[str, float]:
-    """Return the background level [dB(A)] of each track from the label table."""
-    backgrounds = {}
-    for row in rows:
-        level, snr = row.get("level_dba"), row.get("snr_dba")
-        if isinstance(level, float) and isinstance(snr, float):
-            backgrounds[track(row)] = level - snr
-    return backgrounds

@@ -17,8 +17,6 @@ from models.rig_file import changed_rig_text
 from noise.app.design_controls import (
     Base,
     base_of,
-    motion_of,
-    motion_options,
     read_values,
 )
 from noise.base.files import atomic
@@ -26,6 +24,7 @@ from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.grid import fits_remark
 from sim.effects import EFFECTS
 from sim.plan import Setting
+from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
 
 Values = Mapping[str, float | bool | str]
@@ -64,7 +63,7 @@ class Design:
         """Condition as command-line options."""
         support = "fixed" if self.values["fixed"] else f"{self.values['support']:g}"
         words = [
-            motion_options(self.values), f"--interference {self.values['interference']:g}",
+            f"--speed {self.values['speed']:g}", f"--interference {self.values['interference']:g}",
             f"--support-stiffness {support}",
         ]  # fmt: skip
         if self.values["temperature"] != 23.0:
@@ -150,7 +149,7 @@ def design_of(stated: object, bases: dict[str, Base]) -> Design:
         anchor_arm(rig.beams, rig.plate, float(values["support"]))  # refuses what is off the plate
     setting = Setting(
         rig,
-        motion_of(values),
+        ConstantSpeed(float(values["speed"])),
         1e-3 * float(values["interference"]),
         math.inf if values["fixed"] else float(values["support"]),
         float(values["temperature"]),

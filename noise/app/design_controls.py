@@ -6,15 +6,11 @@ base is a shipped material or an opened rig file.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
-from numpy.typing import NDArray
 
 from models.condition import CONDITION
 from models.errors import ParameterError
@@ -24,77 +20,10 @@ from sim.effects import EFFECTS
 from sim.effects.effect import Stage
 from sim.friction import LAWS, friction_law
 from sim.parameters import Parameter, resolve
-from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion
 
 if TYPE_CHECKING:
     from noise.app.opened import Opened
 
-
-@dataclass(frozen=True)
-class RunUp:
-    """Periodic run-up and run-down between two speeds.
-
-    Parameters
-    ----------
-    start, end : float
-        [rad/s]
-    seconds : float
-        Duration of the run-up [s].
-
-    Examples
-    --------
-    >>> RunUp(0.0, 10.0, 2.0).speed(np.array([0.0, 1.0, 3.0, 5.0]))
-    array([0., 5., 5., 5.])
-    """
-
-    start: float
-    end: float
-    seconds: float
-
-    def speed(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Angular speed [rad/s] at `time` [s], both of one shape."""
-        share = np.abs((time / self.seconds + 1.0) % 2.0 - 1.0)
-        return np.asarray(self.start + (self.end - self.start) * share)
-
-    def top_speed(self, seconds: float = math.inf) -> float:
-        """Largest speed of either sign in the first `seconds` [rad/s]."""
-        return float(np.abs(self.speed(np.array([0.0, min(seconds, self.seconds)]))).max())
-
-
-def motion_of(values: Mapping[str, float | bool | str]) -> ShaftMotion:
-    """Return the shaft motion of control values.
-
-    Examples
-    --------
-    >>> motion_of({"motion": "swing", "swing.degrees": 180.0, "swing.hz": 2.0})
-    Oscillation(amplitude=3.141592653589793, frequency=2.0)
-    """
-    if values["motion"] == "run_up":
-        of = [float(values[f"run_up.{name}"]) for name in ("start", "end", "seconds")]
-        return RunUp(*of)
-    if values["motion"] == "swing":
-        return Oscillation(math.radians(float(values["swing.degrees"])), float(values["swing.hz"]))
-    return ConstantSpeed(float(values["speed"]))
-
-
-def motion_options(values: Mapping[str, float | bool | str]) -> str:
-    """Return the motion as command-line options.
-
-    Examples
-    --------
-    >>> motion_options({"motion": "constant", "speed": 5.0})
-    '--speed 5'
-    """
-    if values["motion"] == "run_up":
-        start, end, seconds = (values[f"run_up.{name}"] for name in ("start", "end", "seconds"))
-        return f"--speed {start:g}..{end:g} --seconds {seconds:g}"
-    if values["motion"] == "swing":
-        return f"--oscillate {values['swing.degrees']:g},{values['swing.hz']:g}"
-    return f"--speed {values['speed']:g}"
-
-
-MOTIONS = {"constant": "constant speed", "run_up": "run-up", "swing": "swing"}
-"""Motions of the shaft."""
 
 _FACTORS = {
     "critical_torque": ("Critical torque", "at which the contact breaks"),
@@ -195,9 +124,9 @@ def controls_of(rig: Rig) -> list[Control]:
     >>> from models.rig_file import load_material_rig
     >>> keys = [control.key for control in controls_of(load_material_rig("PDMS"))]
     >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
-    (['motion', 'speed', 'run_up.start'], True, True)
+    (['speed', 'interference', 'fixed'], True, True)
     """
-    conditions = [replace(one, condition=True) for one in (*_motion(rig), *_condition(rig))]
+    conditions = [replace(one, condition=True) for one in _condition(rig)]
     return [*conditions, *_bushing(rig), *_law(rig), *_effects(rig)]
 
 
@@ -232,32 +161,11 @@ def _number(
     )  # fmt: skip
 
 
-def _motion(rig: Rig) -> Iterator[Control]:
-    fastest = CONDITION["speed"].usual[1]
-    usual = min(fastest, 5.0)
-    group, speeds, most = "Motion of the shaft", (0.0, fastest), (-200.0, 200.0)
-    yield Control("motion", "choice", group, "Motion", "constant", choices=MOTIONS)
-    yield _number(
-        "speed", group, "Speed", usual, "rad/s", speeds, most, only=("motion", "constant")
-    )
-    top = min(fastest, 12.0 if math.isinf(rig.fastest_fitted) else rig.fastest_fitted)
-    run_up, swing = ("motion", "run_up"), ("motion", "swing")
-    yield _number("run_up.start", group, "From", 0.0, "rad/s", speeds, most, only=run_up)
-    yield _number("run_up.end", group, "To", top, "rad/s", speeds, most, only=run_up)
-    yield _number(
-        "run_up.seconds", group, "Within", 6.0, "s", (1.0, 30.0), (0.1, 600.0),
-        "and down again in as long", only=run_up,
-    )  # fmt: skip
-    yield _number(
-        "swing.degrees", group, "Amplitude", 15.0, "degrees", (0.5, 60.0), (0.01, 360.0), only=swing
-    )
-    yield _number(
-        "swing.hz", group, "Frequency", 2.0, "Hz", (0.1, 10.0), (0.01, 50.0), log=True, only=swing
-    )
-
-
 def _condition(rig: Rig) -> Iterator[Control]:
-    group = "Condition"
+    group, fastest = "Condition", CONDITION["speed"].usual[1]
+    yield _number(
+        "speed", group, "Speed", min(fastest, 5.0), "rad/s", (0.0, fastest), (-200.0, 200.0)
+    )
     low, high = (1e3 * fit for fit in rig.interference_range)
     fit, support, temperature = (
         CONDITION[name] for name in ("interference", "support_stiffness", "temperature")

@@ -23,7 +23,7 @@ from models.errors import BushingNoiseError
 from noise.base.processes import Worker
 from noise.batch.work import one_thread
 
-_LOADED = ("noise.app.design_sound", "noise.app.design_chart", "noise.labels.segments")
+_LOADED = ("noise.app.design_view", "noise.app.design_chart", "noise.labels.segments")
 """Modules that are loaded before a process starts."""
 
 _Question = TypeVar("_Question")

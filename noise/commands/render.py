@@ -265,7 +265,7 @@ def _folder(options: Namespace, sources: list[_Source]) -> Path | None:
 
 def _files(options: Namespace, sources: list[_Source], folder: Path | None) -> list[_File]:
     """Return the output files with their sources."""
-    from noise.audio.audio_file import audio_path
+    from noise.audio.render import audio_path
 
     if folder is not None:
         return [_File(one.name, audio_path(folder / one.name), [one]) for one in sources]

@@ -10,8 +10,8 @@ from hypothesis import given, settings, strategies as st
 from models.condition import FIXED, Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from noise.audio.audio_file import write_audio
 from noise.audio.gain import common_full_scale, least_full_scale
+from noise.audio.render import write_audio
 from noise.audio.sound import audible
 from noise.recordings import read_recording
 from noise.recordings.wav import BITS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -127,8 +128,8 @@ def test_the_condition_is_told_as_options_that_the_command_reads():
 
     parser = ArgumentParser()
     add_options(parser, [CONDITION])
-    for motion in ("constant", "run_up", "swing"):
-        of = design({"motion": motion, "fixed": motion == "swing", "temperature": 40.0})
+    for fixed in (False, True):
+        of = design({"speed": 7.5, "fixed": fixed, "temperature": 40.0})
         options = parser.parse_args(of.options.split())
         assert options.interference == 0.279
-        assert (options.speed is None) == (motion == "swing")
+        assert options.support_stiffness == (math.inf if fixed else 2214.0)

@@ -15,7 +15,7 @@ from models.rig_file import load_material_rig
 from noise.app.design import design_of
 from noise.app.design_controls import bases_of
 from noise.app.design_player import BLOCK, HEADER, RATE, REFUSED, Player
-from noise.app.design_sound import LiveSounds
+from noise.app.design_view import LiveSounds
 from noise.app.opened import open_paths
 from sim.acquisition import Acquisition
 from sim.run import simulate
