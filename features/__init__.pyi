@@ -18,19 +18,17 @@ from .kernels.levels import (
     third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,
 )
-from .kernels.lines import (
-    Lines as Lines,
-    find_lines as find_lines,
-)
 from .kernels.slips import (
     Pulses as Pulses,
     TorqueSlips as TorqueSlips,
     torque_slips as torque_slips,
 )
 from .kernels.spectra import (
+    Lines as Lines,
     SpectralShape as SpectralShape,
     Spectrum as Spectrum,
     autospectrum as autospectrum,
+    find_lines as find_lines,
     spectral_shape as spectral_shape,
 )
 from .modal.hammer import (
@@ -42,15 +40,13 @@ from .modal.modal_fit import (
     Modes as Modes,
     fit_modes as fit_modes,
 )
-from .recording import (
-    feature_vector as feature_vector,
-    recording_features as recording_features,
-)
 from .table import (
     FEATURES as FEATURES,
     WINDOW_FEATURES as WINDOW_FEATURES,
     Feature as Feature,
     feature_names as feature_names,
+    feature_vector as feature_vector,
     features_of as features_of,
     recording_feature_names as recording_feature_names,
+    recording_features as recording_features,
 )

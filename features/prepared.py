@@ -40,7 +40,6 @@ from features.kernels.levels import (
     relative_db,
     third_octave_levels,
 )
-from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation, short_time
 from features.kernels.slips import (
     Pulses,
@@ -51,7 +50,17 @@ from features.kernels.slips import (
     squared,
     torque_slips,
 )
-from features.kernels.spectra import SpectralShape, Spectrum, spectral_shape, welch, whole_spectrum
+from features.kernels.spectra import (
+    Lines,
+    SpectralShape,
+    Spectrum,
+    find_lines,
+    line_resolution,
+    noise_floor,
+    spectral_shape,
+    welch,
+    whole_spectrum,
+)
 from models.show import short_repr
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")

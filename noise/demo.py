@@ -13,8 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from features.recording import recording_features
-from features.table import recording_feature_names
+from features.table import recording_feature_names, recording_features
 from models.radiation.impulse_responses import convolve
 from models.radiation.rig_response import impulse_responses
 from models.recording import Recording

@@ -26,7 +26,7 @@ from features.kernels.conditioning import (
     WORKING_LIMIT,
     checked_signal,
 )
-from features.kernels.lines import parabola_tops
+from features.kernels.spectra import parabola_tops
 from models.show import short_repr
 
 _TORQUE_SMOOTHING = math.sqrt(math.log(2.0) / 2.0) / math.pi / 2_000.0

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from features.recording import recording_features
+from features.table import recording_features
 from models.condition import FIXED, Condition
 from models.show import short_repr
 from noise.base.model_file import ModelKind, load_model, save_model

@@ -42,8 +42,7 @@ from noise.pages.clips import (
 )
 from noise.pages.page import page_html, write_page
 from noise.recordings import find_recordings
-from noise.recordings.files import open_blocks
-from noise.recordings.folders import files_below
+from noise.recordings.files import files_below, open_blocks
 from noise.recordings.formats import formats
 from noise.recordings.interpretation import PascalPerFullScale
 

@@ -6,11 +6,10 @@ Values are never guessed: a number in quotes or a torque in kN m is refused; onl
 same unit are equivalent. A JSON file of another program, without any key of a sidecar, is ignored.
 
 ``"support_stiffness_Nm_rad": null`` is the clamp bolted to the baseplate; elsewhere null is the
-same as a missing key. Directions are normalised.
+same as a missing key.
 """
 
 import json
-import math
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -60,17 +59,6 @@ def _name(value: Any, key: str, where: str) -> str:
         ) from None
 
 
-def _direction(value: Any, key: str, where: str) -> Any:
-    """Read a vector and normalise it."""
-    direction = Vector(key, 3).read(value, where)
-    length = math.hypot(*direction)
-    if not 0.0 < length < math.inf:
-        raise ParameterError(f"{where}: {key} = {show(value)} must have a length above 0")
-    if math.isclose(length, 1.0, rel_tol=1e-9):
-        return direction
-    return tuple(part / length for part in direction)
-
-
 @dataclass(frozen=True)
 class SidecarChannel:
     """Entry of a channel in a sidecar.
@@ -84,16 +72,14 @@ class SidecarChannel:
         Factor on the samples: [unit per full scale], or [unit per stored number] for floating-point
         samples.
     position, direction : tuple of float, optional
-        Position [m] and unit vector [-], as for `models.recording.Channel`.
+        Position [m] and direction [-], as for `models.recording.Channel`.
     """
 
     name: Annotated[str, ReadBy("name", _name)]
     unit: Annotated[str | None, Text("unit")] = None
     scale: Annotated[float | None, Quantity("scale")] = None
     position: Annotated[tuple[float, float, float] | None, Vector("position_m", 3)] = None
-    direction: Annotated[
-        tuple[float, float, float] | None, ReadBy("direction", _direction, list)
-    ] = None
+    direction: Annotated[tuple[float, float, float] | None, Vector("direction", 3)] = None
 
     def __post_init__(self) -> None:
         own = self.channel.unit

@@ -38,8 +38,7 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
-from features.recording import recording_features
-from features.table import recording_feature_names
+from features.table import recording_feature_names, recording_features
 from models.condition import FIXED
 from models.recording import Channel, Recording
 from models.rig import LawSpec, Rig

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from features.recording import recording_features
+from features.table import recording_features
 from noise.app.opened import open_paths
 from noise.app.sounds import SoundCache, bands, level_course
 from noise.cli import main

@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from scipy import fft, signal
 
-from features.recording import feature_vector
-from features.table import features_of
+from features.table import feature_vector, features_of
 from tests.features.test_feature_sounds import SOUNDS
 
 MASTER_RATE = 192_000

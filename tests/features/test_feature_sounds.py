@@ -10,8 +10,7 @@ import pytest
 from scipy import fft
 from scipy.signal import lfilter
 
-from features.recording import feature_vector
-from features.table import KINDS, features_of
+from features.table import KINDS, feature_vector, features_of
 
 MASTER_RATE = 96_000
 

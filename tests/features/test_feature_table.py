@@ -9,8 +9,14 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import features
-from features.recording import feature_vector, recording_features
-from features.table import FEATURES, KINDS, feature_names, recording_feature_names
+from features.table import (
+    FEATURES,
+    KINDS,
+    feature_names,
+    feature_vector,
+    recording_feature_names,
+    recording_features,
+)
 from models.errors import ParameterError
 from models.recording import Channel, Recording
 

@@ -8,8 +8,7 @@ from hypothesis import assume, given, settings, strategies as st
 
 from features.kernels.conditioning import band_signal, forward
 from features.kernels.harmonics import analyse_harmonics
-from features.kernels.lines import find_lines
-from features.kernels.spectra import autospectrum
+from features.kernels.spectra import autospectrum, find_lines
 
 RATE = 16e3
 

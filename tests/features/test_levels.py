@@ -7,7 +7,7 @@ import pytest
 
 from features.kernels.levels import a_weighted, band_power, fast_levels, sound_levels
 from features.kernels.spectra import autospectrum
-from features.recording import feature_vector
+from features.table import feature_vector
 from models.errors import ParameterError
 
 PASCAL_DB = 93.9794

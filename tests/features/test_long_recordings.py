@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-import features.recording
-from features.recording import piece_count, recording_features
-from features.table import features_of
+import features.table
+from features.table import features_of, piece_count, recording_features
 from models.condition import Condition
 from models.recording import Channel, Recording
 from noise.recordings import write_recording
@@ -43,8 +42,8 @@ def check_alike(kind, run, one, other):
 )
 def test_there_is_no_jump_where_pieces_begin(kind, sound, monkeypatch):
     assert (piece_count(round(43 * RATE)), piece_count(round(45 * RATE))) == (1, 5)
-    monkeypatch.setattr(features.recording, "LONG", 1 << 19)
-    monkeypatch.setattr(features.recording, "PIECE", 1 << 17)
+    monkeypatch.setattr(features.table, "LONG", 1 << 19)
+    monkeypatch.setattr(features.table, "PIECE", 1 << 17)
     run = stationary(kind, sound, 11.5)
     shorter = first(run, 10.5)
     assert [piece_count(one.samples.shape[1]) for one in (shorter, run)] == [1, 5]
@@ -58,8 +57,8 @@ def test_a_loud_stretch_counts_by_its_power(monkeypatch):
     x += loud * np.sin(2 * np.pi * 1200 * t)
     run = Recording(x[np.newaxis], RATE, (Channel("pressure"),))
     whole = recording_features(run)
-    monkeypatch.setattr(features.recording, "LONG", 1)
-    monkeypatch.setattr(features.recording, "PIECE", 100_000)
+    monkeypatch.setattr(features.table, "LONG", 1)
+    monkeypatch.setattr(features.table, "PIECE", 100_000)
     found = recording_features(run)
     for name in ("level", "level_a", "third_octave_1250", "crest", "hum_share", "line_frequency"):
         assert found[f"pressure_{name}"] == pytest.approx(whole[f"pressure_{name}"], abs=0.3), name
@@ -75,8 +74,8 @@ def test_a_long_file_has_the_features_of_the_recording_in_memory(tmp_path, monke
     )
     path = write_recording(tmp_path / "run.wav", run)
     monkeypatch.setattr("noise.recordings.files._LARGE", 0)
-    monkeypatch.setattr(features.recording, "LONG", 1)
-    monkeypatch.setattr(features.recording, "PIECE", 100_000)
+    monkeypatch.setattr(features.table, "LONG", 1)
+    monkeypatch.setattr(features.table, "PIECE", 100_000)
     in_memory = recording_features(run)
     with open_blocks(path) as blocks:
         assert blocks is not None

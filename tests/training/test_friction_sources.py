@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from features.kernels.lines import find_lines
-from features.kernels.spectra import autospectrum
+from features.kernels.spectra import autospectrum, find_lines
 from noise.training.classifier.friction_mechanisms import (
     ENVELOPE_RATE,
     ModalBody,

@@ -23,8 +23,7 @@ from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import HUMAN, read_label_table
 from noise.labels.windows import has_window_channel, window_features
 from noise.recordings import find_recordings
-from noise.recordings.files import open_blocks
-from noise.recordings.folders import files_below, is_file
+from noise.recordings.files import files_below, is_file, open_blocks
 from noise.training.classifier.samples import Sample
 
 LONGEST_WINDOW = 1.0
