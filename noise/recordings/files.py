@@ -3,9 +3,9 @@
 The formats are in `noise.recordings.formats`; `noise.recordings.interpretation` determines channels
 and calibration for all of them.
 
-In folders hidden files are skipped, links to folders are followed, and each folder is searched once.
-A folder that disappears during the search counts as empty. Unreadable folders and paths that are no
-files (broken links, pipes, devices) are skipped, with one note per reason.
+In folders hidden files are skipped, links to folders are followed, and each folder is searched
+once. A folder that disappears during the search counts as empty. Unreadable folders and paths that
+are no files (broken links, pipes, devices) are skipped, with one note per reason.
 """
 
 from __future__ import annotations
