@@ -391,9 +391,7 @@ class AxisRule:
     points : int
         Number of points of a range without one, where there is no step.
     low : float
-        Lower limit, in the unit of the axis, such as [rad/s].
-    open_low : bool
-        Whether `low` itself is not allowed.
+        Lower limit, itself not allowed, in the unit of the axis, such as [rad/s].
     fixed : bool
         Whether ``fixed`` is a value.
     """
@@ -401,7 +399,6 @@ class AxisRule:
     step: float | None = None
     points: int = 17
     low: float = 0.0
-    open_low: bool = True
     fixed: bool = False
 
 
@@ -409,7 +406,7 @@ POSITIVE = AxisRule()
 SPEED = AxisRule(step=SPEED_STEP)
 FREQUENCY = AxisRule(step=0.25)
 SUPPORT = AxisRule(fixed=True)
-TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO, open_low=False)
+TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO)
 
 
 def spread(low: float, high: float, points: int) -> tuple[float, ...]:
@@ -427,8 +424,6 @@ def spread(low: float, high: float, points: int) -> tuple[float, ...]:
     >>> spread(0.25, 1.0, 4)
     (0.25, 0.5, 0.75, 1.0)
     """
-    if points == 1:
-        return (low,)
     step = (high - low) / (points - 1)
     return tuple(float(f"{low + i * step:.10g}") for i in range(points))
 
@@ -534,10 +529,9 @@ def _checked(numbers: list[float], what: str, text: str, rule: AxisRule) -> tupl
     values = sorted(set(numbers))
     if not values:
         raise ParameterError(f"{what} is empty; give at least one value")
-    low = rule.low
-    if not (values[0] > low if rule.open_low else values[0] >= low) or math.isnan(values[-1]):
-        bound = "above" if rule.open_low else "at least"
-        raise ParameterError(f"{what} is {text!r}; values must be {bound} {low:g}")
+    finite = rule.fixed or math.isfinite(values[-1])
+    if not values[0] > rule.low or math.isnan(values[-1]) or not finite:
+        raise ParameterError(f"{what} is {text!r}; values must be above {rule.low:g} and finite")
     if len(values) > MOST_POINTS:
         raise ParameterError(f"{what} has {len(values)} values; at most {MOST_POINTS} are mapped")
     return tuple(values)
