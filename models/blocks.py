@@ -138,30 +138,3 @@ def reader_of(recording: Recording | RecordingBlocks, row: int) -> Read:
         return samples
 
     return read
-
-
-def in_pieces(read: Read, n_samples: int, length: int = _PIECE) -> Iterator[NDArray[np.float64]]:
-    """Yield a channel piece by piece.
-
-    Parameters
-    ----------
-    read : callable
-        Function from `reader_of`.
-    n_samples : int
-        Samples of the channel.
-    length : int
-        Samples of a piece; the last may be shorter.
-
-    Yields
-    ------
-    ndarray, shape (n,)
-        [unit of the channel]
-
-    Examples
-    --------
-    >>> ones = np.ones(480)
-    >>> [piece.size for piece in in_pieces(lambda first, last: ones[first:last], 480, 200)]
-    [200, 200, 80]
-    """
-    for first in range(0, n_samples, length):
-        yield read(first, min(first + length, n_samples))

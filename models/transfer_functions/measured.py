@@ -213,7 +213,9 @@ def measured_impulse_response(
             coherence=None,
         )
     )
-    before = share_before_cause(trusted)
+    lines = np.arange(0.0, float(trusted.frequencies[-1]), trusted.spacing)
+    power = np.square(irfft(trusted.at(lines, falls_below=True)))
+    before = float(np.sqrt(power[power.size // 2 :].sum() / power.sum()))  # by rms
     if before > LARGEST_BEFORE:
         raise ParameterError(
             f"{transfer.name}: {100 * before:.0f} % of the response comes before its cause; the "
@@ -321,23 +323,6 @@ def fill_between_lines(transfer: TransferFunction) -> TransferFunction:
     fine[-(n // 4) :] = (impulse * gate)[-(n // 4) :]
     table = np.asarray(step / FINER * np.arange(fine.size // 2 + 1), np.float64)
     return replace(transfer, frequencies=table, response=rfft(fine), coherence=None)
-
-
-def share_before_cause(transfer: TransferFunction) -> float:
-    """Return the acausal share of a transfer function by rms [-].
-
-    Examples
-    --------
-    >>> f = np.arange(0.0, 1001.0)
-    >>> delay = np.exp(-2j * np.pi * f * 0.01)
-    >>> shares = [share_before_cause(TransferFunction(f, h)) for h in (delay, delay.conj())]
-    >>> [round(share) for share in shares]
-    [0, 1]
-    """
-    lines = np.arange(0.0, float(transfer.frequencies[-1]), transfer.spacing)
-    impulse = irfft(transfer.at(lines, falls_below=True))
-    power = np.square(impulse)
-    return float(np.sqrt(power[impulse.size // 2 :].sum() / power.sum()))
 
 
 def _continued(

@@ -82,10 +82,12 @@ def friction_regime(motion: Motion) -> Regime:
     >>> friction_regime(simulate(load_material_rig("PDMS"), 5.0, seconds=0.1).motion).value
     'steady sliding'
     """
-    sudden, oscillation = regime_measures(motion)
-    if oscillation <= LEAST_OSCILLATION:
+    last = motion.part(motion.torque.size // 2)
+    deviation, mean = float(np.std(last.torque)), abs(float(np.mean(last.torque)))
+    if deviation <= LEAST_OSCILLATION * mean:
         return Regime.STEADY_SLIDING
-    return Regime.STICK_SLIP if sudden > LEAST_SUDDEN else Regime.QUASI_HARMONIC
+    sudden = motion_slips(last).sudden_share > LEAST_SUDDEN
+    return Regime.STICK_SLIP if sudden else Regime.QUASI_HARMONIC
 
 
 _CARRIED_ALONG = 0.2
@@ -120,36 +122,6 @@ def never_slips(motion: Motion) -> bool:
     fastest = float(np.abs(motion.shaft_speed).max())
     turned = fastest > 0.0 and later.size > 0
     return turned and float(np.abs(later).max()) <= _CARRIED_ALONG * fastest
-
-
-def regime_measures(motion: Motion) -> tuple[float, float]:
-    """Return the two measures that define the regime, over the last half of a motion.
-
-    Parameters
-    ----------
-    motion : Motion
-
-    Returns
-    -------
-    sudden : float
-        Sudden share of the torque's falls [-].
-    oscillation : float
-        Standard deviation of the torque over its mean [-]; infinite for a mean of zero.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.run import simulate
-    >>> sudden, oscillation = regime_measures(
-    ...     simulate(load_material_rig("fluorocarbon"), 1.0, seconds=0.5).motion
-    ... )
-    >>> round(sudden, 1), round(oscillation, 1)
-    (0.7, 0.1)
-    """
-    last = motion.part(motion.torque.size // 2)
-    deviation, mean = float(np.std(last.torque)), abs(float(np.mean(last.torque)))
-    oscillation = deviation / mean if mean > 0.0 else math.inf if deviation > 0.0 else 0.0
-    return motion_slips(last).sudden_share, oscillation
 
 
 LEAST_SUDDEN = 0.06
