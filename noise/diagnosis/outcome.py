@@ -11,7 +11,6 @@ from models.show import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from pandas import DataFrame
 
     from models.recording import Recording
     from models.rig import LawSpec, Rig
@@ -95,8 +94,6 @@ class EffectFinding:
         Gaps of held-out recordings, relative to that of repeats; None without a fit [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None if there is nothing to close.
-    fitted_with : tuple of str
-        Effects of the same fit.
     """
 
     name: str
@@ -112,7 +109,6 @@ class EffectFinding:
     closed_low: float | None = None
     closed_high: float | None = None
     closed_by_effect: float | None = None
-    fitted_with: tuple[str, ...] = ()
 
 
 @short_repr
@@ -316,24 +312,6 @@ class Diagnosis:
             axes.set_xlabel("Probability of being at work [%]")
             axes.set_title(headline(self), loc="left")
         return axes
-
-    def to_pandas(self) -> DataFrame:
-        """Return one row per effect as a data frame of pandas, as ``diagnosis.json`` names it.
-
-        Returns
-        -------
-        pandas.DataFrame
-            The most probable first; its parameters are a dictionary.
-
-        Raises
-        ------
-        ParameterError
-            pandas is not installed.
-        """
-        from models.show import data_frame
-
-        effects = as_json(self)["effects"]
-        return data_frame([*effects[0]] if effects else ["name"], effects)
 
 
 _KEYS: dict[type, dict[str, str]] = {

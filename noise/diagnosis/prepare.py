@@ -433,7 +433,11 @@ def bounded(
         notes.append(f"samples above {HIGHEST_RATE / 1e3:g} kHz were filtered and thinned out")
     if any(recording.duration > LONGEST for recording in recordings):
         notes.append(f"of recordings longer than {LONGEST:g} s the last {LONGEST:g} s were used")
-    return _with_decimated_sensors(rig, min(factors, default=1)), parts, tuple(notes)
+    least = min(factors, default=1)
+    if least > 1:
+        sensors = {kind: _decimated(s, least) for kind, s in rig.sensors.by_kind.items()}
+        rig = replace(rig, sensors=replace(rig.sensors, by_kind=sensors))
+    return rig, parts, tuple(notes)
 
 
 def _part(recording: Recording, factor: int) -> Recording:
@@ -447,15 +451,7 @@ def _part(recording: Recording, factor: int) -> Recording:
     return replace(recording, samples=np.ascontiguousarray(last), rate=rate)
 
 
-def _with_decimated_sensors(rig: Rig, factor: int) -> Rig:
-    """Return a rig with the sensors of recordings that were decimated by a factor."""
-    if factor == 1:
-        return rig
-    sensors = {kind: _decimated_sensor(s, factor) for kind, s in rig.sensors.by_kind.items()}
-    return replace(rig, sensors=replace(rig.sensors, by_kind=sensors))
-
-
-def _decimated_sensor(sensor: Sensor, factor: int) -> Sensor:
+def _decimated(sensor: Sensor, factor: int) -> Sensor:
     """Return a sensor after decimation, with less white noise and with steps as white noise."""
     if sensor.noise is None:
         return replace(sensor, bits=None)

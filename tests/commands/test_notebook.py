@@ -65,7 +65,7 @@ def sweep():
 
 
 DRAWN = (recording, run, one_effect, response, sweep)
-ROWS = {segments: 30, label_table: 30, one_effect: None, response: 401, modes: 2, sweep: 4,
+ROWS = {segments: 30, label_table: 30, response: 401, modes: 2, sweep: 4,
         identification: 1}  # fmt: skip
 
 

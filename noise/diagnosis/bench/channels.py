@@ -25,7 +25,11 @@ from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict
+from noise.diagnosis.simulated.transfer_functions import (
+    OUTPUTS,
+    TransferFunctionCache,
+    predict,
+)
 
 _EXACT = 0.16
 """Largest difference of logarithms between a factor and that of a unit [-], which is the error of
@@ -262,8 +266,6 @@ def _falling(torque: Array, rate: float) -> float:
 _RISE = 0.3
 """Rise of a channel from its start to its end, over its mean, above which it is a ramp such as an
 angle [-]; an angle rises by at least twice this, and a torque drifts less; assumed."""
-
-OUTPUTS = ("acceleration", "pressure")
 
 _TORQUE = (1.0 / 6.0, 6.0)
 """Range of the mean torque over the kinetic torque of the fit, with any effect [-]; assumed."""

@@ -279,7 +279,7 @@ def hum_summary(x: Array, rate: float) -> Numbers:
     slow = _thinned(x, every)
     n = slow.size
     lines, first, last = _hum_lines(rate / every / n)
-    power = powers(rfft(_detrended(slow) * hanning(n))[: int(lines.max()) + 13])
+    power = powers(rfft(_detrended(slow) * np.hanning(n))[: int(lines.max()) + 13])
     best = first + int(np.argmax(power[first : last + 1]))
     logarithms = np.log([_line_ratio(power, line) for line in [*lines.tolist(), best]])
     numbers: Numbers = {}
@@ -323,30 +323,6 @@ def _hum_lines(spacing: float) -> tuple[NDArray[np.int64], int, int]:
     """Bins of the harmonics of each mains, and between which the strongest hum is looked for."""
     lines = [round(k * mains / spacing) for mains in _MAINS for k in range(1, 8)]
     return np.array(lines), math.ceil(44.0 / spacing), math.floor(66.0 / spacing)
-
-
-@lru_cache(maxsize=16)
-def hanning(n: int) -> Array:
-    """Hann window of a length, made once.
-
-    Parameters
-    ----------
-    n : int
-        Samples.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [-], not to be written to.
-
-    Examples
-    --------
-    >>> hanning(3).tolist()
-    [0.0, 1.0, 0.0]
-    """
-    window = np.hanning(n)
-    window.setflags(write=False)
-    return window
 
 
 def _log_share(those: NDArray[np.bool_]) -> float:

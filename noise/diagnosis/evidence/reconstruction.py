@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from noise.base.arrays import Array
-from noise.diagnosis.evidence.channel_summary import hanning
 from sim.bushing import LumpedBushing
 
 _SPEED_LIMIT = 60.0
@@ -61,7 +60,7 @@ def angle_summary(angle: Array, speed: float, rate: float) -> dict[str, float]:
     v = np.diff(means) * rate / block / abs(speed)
     v -= v.mean()
     spread = float(v.std()) + 1e-9
-    power = np.abs(rfft(v * hanning(v.size))) ** 2
+    power = np.abs(rfft(v * np.hanning(v.size))) ** 2
     power[0] = 0.0
     best = int(np.argmax(power))
     return {
@@ -125,18 +124,11 @@ def _slow_derivative(length: int, rate: float) -> NDArray[np.complex128]:
 
 def _about_line(angle: Array, rate: float) -> tuple[float, Array]:
     """Mean speed [rad/s], and what the angle has besides [rad]."""
-    time = _centred_time(angle.size, rate)
+    time = (np.arange(angle.size, dtype=np.float64) - 0.5 * (angle.size - 1)) / rate
     left = angle - angle.mean()
     speed = float(time @ left) / float(time @ time)
     left -= speed * time
     return speed, left
-
-
-@lru_cache(maxsize=8)
-def _centred_time(n: int, rate: float) -> Array:
-    time = (np.arange(n, dtype=np.float64) - 0.5 * (n - 1)) / rate
-    time.setflags(write=False)
-    return time
 
 
 LIMIT = 8000.0
@@ -350,13 +342,8 @@ def closed_loop(signal: Array, rate: float) -> Array:
     array([0., 2., 2., 0.])
     """
     n = signal.size
-    turn = _turn(closed_length(n, rate) - n)
+    turn = 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, closed_length(n, rate) - n))
     return np.concatenate([signal, signal[0] + turn * (signal[-1] - signal[0])])
-
-
-@lru_cache(maxsize=8)
-def _turn(n: int) -> Array:
-    return np.asarray(0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, n)))
 
 
 def _low_pass(frequency: Array, rate: float) -> Array:

@@ -45,7 +45,11 @@ from noise.diagnosis.evidence.reconstruction import (
     shaft_speed,
 )
 from noise.diagnosis.simulated.repeats import CHANNELS, condition_key, nominal_repeats
-from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache, predict_outputs
+from noise.diagnosis.simulated.transfer_functions import (
+    OUTPUTS,
+    TransferFunctionCache,
+    predict_outputs,
+)
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.effects.effect import Effect
@@ -54,8 +58,6 @@ Numbers = dict[str, float]
 
 N_REPEATS = 3
 """Simulated repeats a condition; what a case may cost settles it; assumed."""
-
-_OUTPUTS = ("acceleration", "pressure")
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +114,7 @@ def summary(
     if "angle" in signal:
         numbers |= _named("angle", angle_summary(turn * signal["angle"], wanted, rate))
         speed = shaft_speed(turn * signal["angle"], rate)
-    for kind in ("torque", *_OUTPUTS):
+    for kind in ("torque", *OUTPUTS):
         if kind in signal:
             numbers |= _named(kind, channel_summary(signal[kind], rate))
             numbers |= _named(f"{kind}_raw", hum_summary(signal[kind], rate))
@@ -130,7 +132,7 @@ def summary(
     numbers |= more
     for kind, residual in residuals.items():
         numbers |= _named(kind, hum_summary(residual, rate))
-    if len(residuals) == len(_OUTPUTS):
+    if len(residuals) == len(OUTPUTS):
         numbers |= common_residual(residuals["acceleration"], residuals["pressure"], rate)
     return numbers
 
@@ -149,7 +151,7 @@ def signals_of(recording: Recording) -> dict[str, Array]:
     """
     return {
         kind: recording.samples[row]
-        for kind in ("torque", *_OUTPUTS, "angle")
+        for kind in ("torque", *OUTPUTS, "angle")
         if (row := recording.first(kind)) is not None
     }
 
@@ -185,7 +187,7 @@ def path_numbers(
     """
     numbers: Numbers = {}
     residuals = {}
-    paths = {kind: transfer_functions[kind] for kind in _OUTPUTS if kind in signal}
+    paths = {kind: transfer_functions[kind] for kind in OUTPUTS if kind in signal}
     for kind, expected in predict_outputs(spectrum, signal["torque"].size, rate, paths).items():
         path, residuals[kind] = path_summary(expected, signal[kind], rate, slips)
         numbers |= _named(kind, path)
