@@ -152,7 +152,7 @@ def diagnose_case(
         from noise.diagnosis.fit.decide import fit_notes, judge  # no part of a quick answer, and
         from noise.diagnosis.fit.fits import add_fits  # loads the classifier
 
-        judged = judge(case, first, library, seed, tell)
+        judged = judge(case, first, library, posterior, seed, tell)
         answer = _stated(case, first, judged, nulls, library)
         answer = add_fits(case, answer, judged, posterior, seed, tell)
         answer = replace(answer, notes=(*answer.notes, *fit_notes(judged)))

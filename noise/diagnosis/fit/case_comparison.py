@@ -25,6 +25,7 @@ from noise.diagnosis.evidence.reconstruction import closed_spectrum
 from noise.diagnosis.evidence.summary import (
     CaseTable,
     aligned,
+    case_table,
     path_numbers,
     same_channels,
     signals_of,
@@ -37,7 +38,13 @@ from noise.diagnosis.gap import (
     repeat_gap,
     signature,
 )
-from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.model_runs import (
+    OFFSETS,
+    Model,
+    ModelRuns,
+    with_effects,
+    with_offsets,
+)
 from noise.diagnosis.simulated.repeats import Scatter, condition_key
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
@@ -160,6 +167,19 @@ class CaseComparison:
     def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
         """Simulate a repeat by a model, at the condition, rate and length of a recording."""
         return self.runs.simulated(model, template, seed)
+
+    def table_beside(self, model: Model) -> CaseTable:
+        """Return the numbers of the recordings beside those of repeats of a model.
+
+        Raises
+        ------
+        ParameterError
+            The model cannot be simulated.
+        """
+        offsets = dict(zip(OFFSETS, np.exp(model.offsets).tolist(), strict=True))
+        rig = with_effects(with_offsets(self.rig, offsets), model.effects)
+        own = {spec.name: self.effect_of(spec) for spec in model.effects}
+        return case_table(self.recordings, rig, library={**self.library, **own})
 
     def effect_of(self, spec: LawSpec) -> Effect:
         """Return the effect that a model names, in a form of the simulator's or a further one."""
