@@ -227,7 +227,7 @@ def test_no_more_is_fitted_once_a_sure_one_closes_some_of_the_gap(fitted):
 def test_the_first_three_are_fitted_where_the_likeliest_closes_nothing(fitted):
     third = frozenset({"static_ageing"})
     before = chances({PARTIAL: 0.96, WEAK: 0.01, third: 0.005}, unknown=0.001, parameters=0.001)
-    assert fitted(before, {PARTIAL: 6.5})[1] == [PARTIAL, WEAK, third]
+    assert fitted(before, {PARTIAL: 6.5, WEAK: 6.5})[1] == [PARTIAL, WEAK, third]
 
 
 def test_effects_of_the_users_own_are_fitted_whatever_their_chance(fitted):
