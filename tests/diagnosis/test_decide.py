@@ -129,12 +129,13 @@ def test_a_gap_as_of_repeats_speaks_for_nothing_being_the_matter():
     assert small > large
 
 
-def test_a_fit_that_makes_it_worse_hands_its_chance_to_the_unknown():
+def test_a_fit_that_makes_it_worse_hands_half_of_its_chance_to_the_unknown():
     fits = fits_of(6.0, 5.0, {PARTIAL: 6.5, WEAK: 3.0})
     before = chances({PARTIAL: 0.6, WEAK: 0.1})
     now = settled(before, fits)
-    assert likeliest(now, fits.of) == ("unknown",)
-    assert now[UNKNOWN] == pytest.approx(before[UNKNOWN] + before[PARTIAL])
+    assert now[UNKNOWN] == pytest.approx(before[UNKNOWN] + 0.5 * before[PARTIAL])
+    assert now[WEAK] == pytest.approx(before[WEAK])
+    assert likeliest(now, [WEAK]) == ("unknown",)
 
 
 def test_a_pair_whose_search_stopped_short_leaves_what_one_of_it_leaves():
