@@ -19,6 +19,8 @@ T_CRIT, T_KIN = 10.7, 8.0
 STEP = 5e-6
 
 STRIBECK = {
+    "stribeck_exponential": lambda x: np.exp(-abs(x)),
+    "stribeck_gaussian": lambda x: np.exp(-(x**2)),
     "stribeck_lorentzian": lambda x: 1.0 / (1.0 + x**2),
 }
 NAMES = tuple(name for name in LAWS if name not in {"coulomb", "lugre"})
