@@ -94,6 +94,8 @@ class EffectFinding:
         Gaps of held-out recordings, relative to that of repeats; None without a fit [-].
     closed, closed_low, closed_high, closed_by_effect : float, optional
         Shares of the closable gap, with a 90 % interval; None if there is nothing to close.
+    fitted_with : tuple of str
+        Effects of the same fit.
     """
 
     name: str
@@ -109,6 +111,7 @@ class EffectFinding:
     closed_low: float | None = None
     closed_high: float | None = None
     closed_by_effect: float | None = None
+    fitted_with: tuple[str, ...] = ()
 
 
 @short_repr

@@ -725,7 +725,7 @@ def settled_parts(
         if first:
             cut.append(recording.name or f"recording {i + 1}")
             longest = max(longest, first / recording.rate)
-    notes = ()
+    notes: tuple[str, ...] = ()
     if cut:
         which = joined(cut) if len(cut) <= _MOST_NAMED else f"{len(cut)} recordings"
         notes = (

@@ -199,6 +199,7 @@ def _finding(
         closed_low=None if interval is None else interval[0],
         closed_high=None if interval is None else interval[1],
         closed_by_effect=closed_share(recalibrated, after),
+        fitted_with=tuple(other for other in fit.names if other != name),
     )
 
 
