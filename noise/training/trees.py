@@ -158,22 +158,23 @@ def grow_quantile_forest(
         n_jobs=-1,
     ).fit(x, y)
     arrivals = model.apply(x)
-    trees = [_single(e.tree_, arrivals[:, k], y) for k, e in enumerate(model.estimators_)]
-    counts = np.array([len(tree.feature) for tree in trees])
+    trees = [_arrays(e.tree_, arrivals[:, k], y) for k, e in enumerate(model.estimators_)]
+    counts = np.array([len(feature) for feature, *_ in trees])
     roots = np.cumsum(counts) - counts
-    children = np.concatenate([tree.children for tree in trees])
+    feature, threshold, children, missing_left, values = map(
+        np.concatenate, zip(*trees, strict=True)
+    )
+    children = (children + np.repeat(roots, counts)[:, None]).astype(np.int32)
     return QuantileForest(
-        roots=roots.astype(np.int32),
-        feature=np.concatenate([tree.feature for tree in trees]),
-        threshold=np.concatenate([tree.threshold for tree in trees]),
-        children=(children + np.repeat(roots, counts)[:, None]).astype(np.int32),
-        missing_left=np.concatenate([tree.missing_left for tree in trees]),
-        values=np.concatenate([tree.values for tree in trees]),
+        roots.astype(np.int32), feature, threshold, children, missing_left, values=values
     )
 
 
-def _single(tree: Any, arrivals: NDArray[np.int64], y: Array) -> QuantileForest:
-    """Return one tree with the quantiles of its leaves; nodes are in depth-first order."""
+def _arrays(tree: Any, arrivals: NDArray[np.int64], y: Array) -> tuple[NDArray[Any], ...]:
+    """Return feature, threshold, children and missing_left of a tree, and quantiles of its leaves.
+
+    Nodes are in depth-first order.
+    """
     leaf = tree.children_left < 0
     rows = np.cumsum(leaf) - 1
     quantiles = (np.arange(PER_LEAF) + 0.5) / PER_LEAF
@@ -182,13 +183,12 @@ def _single(tree: Any, arrivals: NDArray[np.int64], y: Array) -> QuantileForest:
     values = np.zeros((int(leaf.sum()), PER_LEAF), dtype=np.float16)
     for node, of_node in zip(reached, np.split(y[order], starts[1:]), strict=True):
         values[rows[node]] = np.quantile(of_node, quantiles, method="nearest")
-    return QuantileForest(
-        roots=np.zeros(1, dtype=np.int32),
-        feature=np.where(leaf, LEAF, tree.feature).astype(np.int16),
-        threshold=_at_most(np.where(leaf, 0.0, tree.threshold)),
-        children=np.stack([tree.children_left, tree.children_right], axis=1).astype(np.int32),
-        missing_left=np.asarray(tree.missing_go_to_left, dtype=bool) & ~leaf,
-        values=values,
+    return (
+        np.where(leaf, LEAF, tree.feature).astype(np.int16),
+        _at_most(np.where(leaf, 0.0, tree.threshold)),
+        np.stack([tree.children_left, tree.children_right], axis=1),
+        np.asarray(tree.missing_go_to_left, dtype=bool) & ~leaf,
+        values,
     )
 
 

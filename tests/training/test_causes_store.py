@@ -54,7 +54,19 @@ def test_the_command_trains_on_files(folder, monkeypatch):
 
     monkeypatch.setattr(command, "train_posterior", quickly)
     target = folder / "causes.npz"
-    monkeypatch.setattr(sys, "argv", ["causes", "train", str(folder), "--out", str(target)])
+    monkeypatch.setattr(
+        sys,
+        "argv",
+        [
+            "causes",
+            "train",
+            str(folder),
+            "--out",
+            str(target),
+            "--stages",
+            str(folder / "stages.npz"),
+        ],
+    )
     assert command.main() == 0
     assert load_posterior(target).card["cases"] == 2 * fit.CHUNK
 

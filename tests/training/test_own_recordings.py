@@ -35,30 +35,24 @@ def test_the_nearest_folder_named_as_a_label_says_it(tmp_path):
     assert refusals == []
 
 
-def test_a_table_is_finer_than_a_folder(tmp_path):
-    for name in ("b", "c"):
-        write(tmp_path / "none" / name)
-    (tmp_path / "none" / "labels.csv").write_text("file,label\nb.wav,creak\n")
-    samples, _ = own_samples(tmp_path)
-    assert labels_of(samples) == [("b.wav", "creak"), ("c.wav", "none")]
-
-
 def test_of_a_table_that_somebody_has_corrected_the_corrections_count_alone(tmp_path):
     for name in ("a", "b", "creak/c"):
         write(tmp_path / name)
     table = tmp_path / "labels.csv"
     rows = ["a.wav,squeal,human", "b.wav,squawk,classifier", "creak/c.wav,none,classifier"]
     table.write_text("\n".join(["file,label,label_source", *rows]) + "\n")
-    assert labels_of(own_samples(tmp_path)[0]) == [("a.wav", "squeal"), ("c.wav", "creak")]
-    assert labels_of(own_samples(table)[0]) == [("a.wav", "squeal")]
-    assert own_samples(tmp_path)[1] == own_samples(table)[1] == []
+    samples, refusals = own_samples(table)
+    assert (labels_of(samples), refusals) == ([("a.wav", "squeal")], [])
+    samples, refusals = own_samples(tmp_path)  # by folders
+    assert labels_of(samples) == [("c.wav", "creak")]
+    assert sum("labels.csv: is not read" in line for line in refusals) == 1
 
 
 @pytest.mark.parametrize(("seconds", "n"), [(0.5, 1), (1.01, 2), (7.3, 8)])
 def test_windows_of_a_track_are_half_a_second_to_one(tmp_path, seconds, n):
     write(tmp_path / "a", seconds=seconds, tracks=2)
     (tmp_path / "labels.csv").write_text("file,channel,label\na.wav,2,squawk\n")
-    samples, refusals = own_samples(tmp_path)
+    samples, refusals = own_samples(tmp_path / "labels.csv")
     assert labels_of(samples) == [("a.wav", "squawk")] * n
     assert refusals == []
 
@@ -68,21 +62,25 @@ def test_what_cannot_be_used_is_named_in_one_line_each(tmp_path):
     write(tmp_path / "unnamed")
     write(tmp_path / "short", seconds=0.2)
     (tmp_path / "creak" / "bad.wav").write_bytes(b"no sound")
-    (tmp_path / "labels.csv").write_text(
+    table = tmp_path / "labels.csv"
+    table.write_text(
         "file,start_s,channel,label\nunnamed.wav,,,meow\ngone.wav,,,creak\n"
-        "short.wav,0.15,,creak\nshort.wav,0,3,creak\n"
+        "short.wav,0.15,,creak\nshort.wav,0,3,creak\ncreak/good.wav,,,none\n"
     )
-    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
-    windows, refusals = own_samples(tmp_path)
-    assert labels_of(windows) == [("good.wav", "creak")]
-    assert all("\n" not in line for line in refusals)
-    for said in (
-        "unnamed.wav: has no label", "short.wav: creak", "short.wav: has no track '3'",
-        "bad.wav", "label 'meow'",
-        "gone.wav, which is not there", "other.csv",
-    ):  # fmt: skip
-        assert sum(said in line for line in refusals) == 1, said
-    assert len(refusals) == 7
+    samples, refusals = own_samples(table)
+    assert labels_of(samples) == [("good.wav", "none")]
+    assert len(refusals) == 4
+    for part in (
+        "short.wav: creak",
+        "no track '3'",
+        "label 'meow'",
+        "gone.wav, which is not there",
+    ):
+        assert sum(part in line for line in refusals) == 1, part
+    samples, refusals = own_samples(tmp_path)
+    assert labels_of(samples) == [("good.wav", "creak")]
+    for part in ("unnamed.wav: has no label", "short.wav: has no label", "bad.wav", "labels.csv"):
+        assert sum(part in line for line in refusals) == 1, part
 
 
 def clicks(seed):

@@ -39,7 +39,7 @@ STAGES = tuple(stage.value for stage in Stage)
 """In the order of the chain."""
 
 _KIND = ModelKind(
-    "stage nulls", 1, "python -m noise.training.causes stages FOLDER --out",
+    "stage nulls", 1, "python -m noise.training.causes train FOLDER --out causes.npz --stages",
     ("noise.diagnosis", "stages.npz"),
 )  # fmt: skip
 

@@ -30,47 +30,39 @@ def main() -> int:
     training.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
     training.add_argument("--seed", type=int, default=0, help="of the trees")
     training.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
-    stages = commands.add_parser(
-        "stages", help="learn what stages differ by without a cause, from cases that were drawn"
-    )
-    stages.add_argument("folder", type=Path, metavar="FOLDER", help="of draw")
-    stages.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
+    training.add_argument(
+        "--stages", type=Path, metavar="FILE.npz",
+        help="also learn what stages differ by without a cause",
+    )  # fmt: skip
     options = parser.parse_args()
-    does = {"draw": _draw, "train": _train, "stages": _learn_stages}
     try:
-        return does[options.command](options)
+        if options.command == "draw":
+            paths = draw_into(options.out, options.seeds, options.workers)
+            total = -(-len(options.seeds) // CHUNK)
+            for _ in track(paths, "drawing", total=total, unit="file"):
+                pass
+        else:
+            _train(options)
     except ParameterError as error:
         say(f"error: {error}")
         return 2
-
-
-def _draw(options: argparse.Namespace) -> int:
-    paths = draw_into(options.out, options.seeds, options.workers)
-    for _ in track(paths, "drawing", total=-(-len(options.seeds) // CHUNK), unit="file"):
-        pass
     print(options.out)
     return 0
 
 
-def _train(options: argparse.Namespace) -> int:
+def _train(options: argparse.Namespace) -> None:
     check_target(options.out)
     cases = load_cases(options.folder)
     say(f"training on {counted(len(cases), 'case')}")
     posterior = train_posterior(cases, seed=options.seed)
     card = {**posterior.card, "seeds": f"{cases[0].seed}:{cases[-1].seed + 1}"}
     replace(posterior, card=card).save(options.out)
-    print(options.out)
-    return 0
-
-
-def _learn_stages(options: argparse.Namespace) -> int:
-    check_target(options.out)
-    nulls = [case for case in load_cases(options.folder) if case.truth.kind == "none"]
-    names = tuple(sorted({name for case in nulls for name in case.table.names}))
-    tables = [case.table for case in nulls]
-    learn_stage_nulls(tables, names, null_scale(nulls, names)).save(options.out)
-    print(options.out)
-    return 0
+    if options.stages is not None:
+        check_target(options.stages, "--stages")
+        nulls = [case for case in cases if case.truth.kind == "none"]
+        names = tuple(sorted({name for case in nulls for name in case.table.names}))
+        scale = null_scale(nulls, names)
+        learn_stage_nulls([case.table for case in nulls], names, scale).save(options.stages)
 
 
 def _range(text: str) -> range:

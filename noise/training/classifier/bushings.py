@@ -37,21 +37,11 @@ from sim.parameters import Parameter
 from sim.run import Run, pulse_force, simulate
 from sim.shaft import ConstantSpeed, Oscillation, ShaftMotion, SpeedRamp
 
-_MATERIALS = {
-    "fluorocarbon": 0.6,
-    "fluorocarbon-thesis": 0.08,
-    "PDMS": 0.08,
-    "natural-rubber": 0.08,
-    "natural-rubber-film": 0.08,
-    "natural-rubber-film-removed": 0.08,
-}
-"""Shares of the materials of the designs."""
-
 SHAPES = {"weakening_exponent"}
 """Parameters of laws that do not vary between designs."""
 
 
-_EXTRAS = packaged_toml("noise.training.classifier", "extras.toml")
+_TABLE = packaged_toml("noise.training.classifier", "bushings.toml")
 
 
 @dataclass(frozen=True)
@@ -78,7 +68,7 @@ def random_design(rng: Rng) -> Design:
     >>> random_design(np.random.default_rng(3)).rig.material
     'fluorocarbon'
     """
-    rig = _material_rig(picked(_MATERIALS, rng))
+    rig = _material_rig(picked(_TABLE["materials"], rng))
     # Half of them are tight, to creak, the others looser and fast enough to squeal.
     tight = bool(rng.random() < 0.5)
     interference = float(rng.uniform(0.32e-3, 0.42e-3) if tight else rng.uniform(0.15e-3, 0.34e-3))
@@ -203,9 +193,9 @@ def random_extras(present: tuple[LawSpec, ...], rng: Rng) -> tuple[LawSpec, ...]
     """
     chance = rng.random()
     if chance < 0.02:
-        pool, n = _EXTRAS["dear"], 1
+        pool, n = _TABLE["dear"], 1
     elif chance < 0.35:
-        pool, n = _EXTRAS["usual"], int(rng.integers(1, 3))
+        pool, n = _TABLE["usual"], int(rng.integers(1, 3))
     else:
         return ()
     taken = {spec.name for spec in present}

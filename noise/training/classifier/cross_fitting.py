@@ -19,7 +19,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -74,8 +73,7 @@ _LEAST, _MOST = 0.25, 0.97
 """Range of the thresholds [-]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rows:
+class Rows(NamedTuple):
     """Training rows: windows of sounds under several masks of their channels.
 
     Parameters
@@ -118,13 +116,11 @@ class Rows:
         )
 
     def part(
-        self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | Sequence[int] | slice | slice
+        self, rows: NDArray[np.bool_], columns: NDArray[np.bool_] | slice = slice(None)
     ) -> Rows:
         """Return a selection of rows and columns."""
-        return Rows(
-            self.x[rows][:, columns], self.y[rows], self.weight[rows], self.real[rows],
-            self.owner[rows],
-        )  # fmt: skip
+        x = self.x[rows][:, columns]
+        return Rows(x, self.y[rows], self.weight[rows], self.real[rows], self.owner[rows])
 
 
 def masked(features: NDArray[np.float32], kinds: Sequence[str] = _KINDS) -> NDArray[np.float32]:
@@ -242,7 +238,7 @@ def _summed_trees(rows: Rows, seed: int, n_rounds: int) -> BoostedTrees:
     known = np.unique(rows.y[rows.real])
     if known.min(initial=unknown) >= NOISES or unknown not in known:
         return trees
-    own = _trees(rows.part(rows.real, slice(None)), seed, _REAL_ROUNDS)
+    own = _trees(rows.part(rows.real), seed, _REAL_ROUNDS)
     # A label without real sounds has the trees of `unknown`.
     columns = np.arange(len(LABELS))
     alike = np.where(np.isin(columns, known), columns, unknown)

@@ -1,9 +1,8 @@
 """Labelled recordings of the user, as training samples.
 
-Labels come from a row of a label table of ``bushing-noise label``, else from the name of a folder
-above the recording (``creak/run07.wav``). Of a table with corrections (`label_source` is
-``human``), only the corrections are used. Unusable files and labels are skipped, each with one line
-of explanation.
+Labels come from the rows of a label table of ``bushing-noise label``, or from the names of folders
+(``creak/run07.wav``). Of a table with corrections (`label_source` is ``human``), only the
+corrections are used. Unusable files and labels are skipped, each with one line of explanation.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.blocks import RecordingBlocks
-from models.errors import BushingNoiseError, RecordingError
+from models.errors import BushingNoiseError
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import HUMAN, read_label_table
@@ -43,9 +42,6 @@ class _Stretch(NamedTuple):
     channel: str = "all"
 
 
-_Labels = dict[Path, list[_Stretch]]
-
-
 def own_samples(
     source: Path, progress: Callable[[Sequence[Path]], Iterable[Path]] = iter
 ) -> tuple[list[Sample], list[str]]:
@@ -54,8 +50,8 @@ def own_samples(
     Parameters
     ----------
     source : Path
-        Folder, searched recursively for recordings and label tables; or a label table, with files
-        relative to it.
+        Folder, searched recursively for recordings in folders named as labels; or a label table,
+        with files relative to it.
     progress : callable, optional
         Function that yields the recordings and shows the progress.
 
@@ -86,27 +82,14 @@ def own_samples(
     """
     samples: list[Sample] = []
     refusals: list[str] = []
-    if source.is_file():
-        tabled = _from_table(source, source.parent, refusals)
-        paths = list(tabled)
-    else:
-        tabled = _from_tables(source, refusals)
-        paths = [path for path, _ in find_recordings(source)]
-        present = {path.resolve() for path in paths}
-        paths += [path for path, stretches in tabled.items() if stretches and path not in present]
-    for path in progress(paths):
+    labelled = _from_table if source.is_file() else _from_folders
+    stretches = labelled(source, refusals)
+    for path in progress(list(stretches)):
         try:
-            stretches = tabled.get(path.resolve())
-            if not stretches and source.is_dir():
-                stretches = _from_folders(path, source) or stretches
-            if stretches is None:
-                raise RecordingError(
-                    f"{path}: has no label; put it into a folder called {', '.join(LABELS)}, or "
-                    "beside a label table"
-                )
-            samples += _windows(path, stretches, refusals)  # empty without corrections
+            samples += _windows(path, stretches[path], refusals)
         except (BushingNoiseError, OSError) as error:
-            refusals.append(_naming(path, str(error)))
+            message = str(error)
+            refusals.append(message if path.name in message else f"{path}: {message}")
     return samples, refusals
 
 
@@ -138,55 +121,44 @@ def own_card(samples: Sequence[Sample], names: NDArray[np.intp]) -> dict[str, ob
     }
 
 
-def _from_folders(path: Path, folder: Path) -> list[_Stretch]:
-    """Return the stretch with the label of the nearest folder named as a label, if any."""
-    above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
-    label = next((name.lower() for name in above if name.lower() in LABELS), None)
-    return [] if label is None else [_Stretch(label)]
-
-
-def _from_tables(folder: Path, refusals: list[str]) -> _Labels:
-    """Return the stretches of all label tables in a folder, by file."""
-    by_file: _Labels = {}
-    tables = (path for path, _ in files_below(folder) if path.suffix.lower() in TABLE_ENDINGS)
-    for table in sorted(tables):
-        try:
-            of_table = _from_table(table, folder, refusals)
-        except BushingNoiseError as error:
-            refusals.append(_naming(table, str(error)))
-            continue
-        for path, stretches in of_table.items():
-            by_file.setdefault(path, []).extend(stretches)
+def _from_folders(folder: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
+    """Return the stretches of recordings by the nearest folder named as a label."""
+    by_file = {}
+    for path, _ in find_recordings(folder):
+        above = (*reversed(path.relative_to(folder).parts[:-1]), folder.resolve().name)
+        label = next((name.lower() for name in above if name.lower() in LABELS), None)
+        if label is None:
+            refusals.append(
+                f"{path}: has no label; put it into a folder called {', '.join(LABELS)}, or give "
+                "a label table"
+            )
+        else:
+            by_file[path] = [_Stretch(label)]
+    for path, _ in files_below(folder):
+        if path.suffix.lower() in TABLE_ENDINGS:
+            refusals.append(f"{path}: is not read; give a label table by itself")
     return by_file
 
 
-def _from_table(table: Path, folder: Path, refusals: list[str]) -> _Labels:
-    """Return the stretches of a label table by file.
-
-    If the table has corrections, files without corrections have no stretches.
-    """
-    by_file: _Labels = {}
+def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
+    """Return the stretches of a label table by file; of one with corrections, these alone."""
+    by_file: dict[Path, list[_Stretch]] = {}
     unknown = set()
     rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
     by_human = any(row["label_source"] == HUMAN for row in rows)
     for row in rows:
-        file = str(row["file"])
-        there = [p.resolve() for p in (table.parent / file, folder / file) if is_file(p)]
-        if not there:
-            unknown.add(file)
-            continue
-        stretches = by_file.setdefault(there[0], [])
-        if by_human and row["label_source"] != HUMAN:
-            continue
-        start, end = row["start_s"], row["end_s"]
-        stretches.append(
-            _Stretch(
+        path = table.parent / str(row["file"])
+        if not is_file(path):
+            unknown.add(str(row["file"]))
+        elif row["label_source"] == HUMAN or not by_human:
+            start, end = row["start_s"], row["end_s"]
+            stretch = _Stretch(
                 str(row["label"]),
                 start if isinstance(start, float) else 0.0,
                 end if isinstance(end, float) else math.inf,
                 str(row["channel"] or "all"),
             )
-        )
+            by_file.setdefault(path, []).append(stretch)
     refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
     return by_file
 
@@ -224,7 +196,3 @@ def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iter
                 yield Sample(features, label, str(path), OWN_WEIGHT, real=True)
     if featureless:
         refusals.append(f"{path}: has nothing to learn from in it")
-
-
-def _naming(path: Path, message: str) -> str:
-    return message if path.name in message else f"{path}: {message}"

@@ -11,6 +11,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import irfft, rfft
@@ -18,7 +19,7 @@ from scipy.fft import irfft, rfft
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
-from models.rig import Fit, Rig
+from models.rig import Rig
 from models.sensors import Sensors
 from noise.base.arrays import Array, Rng
 from noise.diagnosis.cases.draws import drawn_effect
@@ -30,7 +31,7 @@ from noise.diagnosis.simulated.repeats import (
     plan_repeat,
     repeat_motion,
 )
-from noise.training.causes.cases.rigs import NOISE_DRAWN, Setting, draw_setting, draw_start
+from noise.training.causes.cases.rigs import NOISE_DRAWN, TABLE, Setting, draw_setting, draw_start
 from noise.training.causes.cases.structures import TRADES, draw_structure
 from noise.training.causes.cases.unknown_effects import UNKNOWN_EFFECTS, draw_unknown_effect
 from noise.training.causes.cases.variants import draw_variant
@@ -43,14 +44,7 @@ from sim.effects.effect import ActiveEffect, activated
 from sim.plan import LEARNING
 from sim.run import apply_sensor_effects, radiate_motion, sensor_signals
 
-KINDS = {
-    "none": 0.16,
-    "parameters": 0.12,
-    "one": 0.35,
-    "pair": 0.18,
-    "triple": 0.06,
-    "unknown": 0.13,
-}
+KINDS: Mapping[str, float] = TABLE["kinds"]
 """Classes of cases, and the share of each."""
 
 
@@ -176,8 +170,7 @@ def draw_case(seed: int) -> DrawnCase:
     )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class _DrawnRig:
+class _DrawnRig(NamedTuple):
     """A rig with measured responses; what it truly is, at the rate of the simulation."""
 
     setting: Setting
@@ -207,29 +200,19 @@ def _drawn_rig(number: int) -> _DrawnRig:
     listed = activated(rig.effects, EFFECTS)
     if any(one.effect.force or one.effect.chain for one in listed):
         # What the file says of blows in the anchors is right, and so is what it lists.
-        plain = {
-            support: apply_chain_effects(
-                _with_pulses(response, known, middle, support), listed, np.random.default_rng(0)
+        for support, response in plain.items():
+            modelled = impulse_responses(rig, middle, support, response.rate)
+            struck = replace(
+                response,
+                pulse_to_acceleration=modelled.pulse_to_acceleration,
+                pulse_to_pressure=modelled.pulse_to_pressure,
             )
-            for support, response in plain.items()
-        }
+            plain[support] = apply_chain_effects(struck, listed, np.random.default_rng(0))
     wrong = {c: 1.0 + bench.wrong_speed * float(rng.uniform(-1.0, 1.0)) for c in setting.conditions}
     if rng.random() < 0.5:  # a tachometer that is off, rather than readings
         wrong = dict.fromkeys(wrong, next(iter(wrong.values())))
     speeds = tuple(wrong[c] * c.speed for c in setting.conditions)
     return _DrawnRig(replace(setting, rig=known), plain, speeds, _warmer(known, bench.warmer))
-
-
-def _with_pulses(
-    plain: ImpulseResponses, rig: Rig, interference: float, support_stiffness: float
-) -> ImpulseResponses:
-    unmeasured = replace(rig, measured=())
-    modelled = impulse_responses(unmeasured, interference, support_stiffness, plain.rate)
-    return replace(
-        plain,
-        pulse_to_acceleration=modelled.pulse_to_acceleration,
-        pulse_to_pressure=modelled.pulse_to_pressure,
-    )
 
 
 def _warmer(rig: Rig, warmer: float) -> Rig:
@@ -252,8 +235,11 @@ def _draw_cause(rig: Rig, rng: Rng) -> tuple[Truth, list[ActiveEffect]]:
         return Truth(kind, offsets=draw_offsets(rng)), []
     if kind == "unknown":
         name, strength = str(rng.choice(list(UNKNOWN_EFFECTS))), _strength(rng)
-        unknown = unknown_effect(name, strength, rig.fit(0.279e-3), rng)
-        return Truth(kind, (name,), ("plain",), (strength,)), [unknown]
+        fit = rig.fit(0.279e-3)
+        unknown = draw_unknown_effect(
+            name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng
+        )
+        return Truth(kind, (name,), ("plain",), (strength,)), [unknown.active({})]
     # Of what the rig file lists nothing is missing, but of an irregularity there may be more.
     more = [spec.name for spec in irregular_effects(rig)]
     listed = {spec.name for spec in rig.effects} - set(more)
@@ -282,12 +268,6 @@ def draw_offsets(rng: Rng) -> tuple[tuple[str, float], ...]:
     sign = float(rng.choice([-1.0, 1.0]))
     names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
     return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
-
-
-def unknown_effect(name: str, strength: float, fit: Fit, rng: Rng) -> ActiveEffect:
-    """Draw an effect of `UNKNOWN_EFFECTS`, of a strength from 0 to 1 [-], on a rig's fit."""
-    drawn = draw_unknown_effect(name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng)
-    return drawn.active({})
 
 
 def active_effect(name: str, strength: float, rng: Rng) -> ActiveEffect:

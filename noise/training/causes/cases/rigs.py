@@ -111,12 +111,12 @@ STARTS: Mapping[str, Callable[[float, Rng], Course]] = {
 end as a function of time."""
 
 
-_TABLE = packaged_toml("noise.training.causes.cases", "laws.toml")
+TABLE = packaged_toml("noise.training.causes.cases", "cases.toml")
 
-MATERIALS: Mapping[str, float] = _TABLE["materials"]
+MATERIALS: Mapping[str, float] = TABLE["materials"]
 """Shipped ones with laws of their own, and how often each is met."""
 
-OWN_LAWS = {name: float(row["share"]) for name, row in _TABLE["laws"].items()} | {**MATERIALS}
+OWN_LAWS = {name: float(row["share"]) for name, row in TABLE["laws"].items()} | {**MATERIALS}
 """Laws, or materials that have one, and how often each is met."""
 
 
@@ -129,7 +129,7 @@ def draw_law(name: str, rng: Rng) -> LawSpec:
     >>> sorted(draw_law("lugre", np.random.default_rng(0)).parameters)[-2:]
     ['stribeck_speed', 'viscous_share_per_speed']
     """
-    ranges = {key: spec for key, spec in _TABLE["laws"][name].items() if key != "share"}
+    ranges = {key: spec for key, spec in TABLE["laws"][name].items() if key != "share"}
     return LawSpec(name, draw_numbers(ranges, rng))
 
 

@@ -23,7 +23,7 @@ _LINES = np.arange(10.0, 10_001.0, 2.5)
 _SOUND_SPEED = 343.0
 
 
-TRADES = packaged_toml("noise.training.causes.cases", "laws.toml")["trades"]
+TRADES = packaged_toml("noise.training.causes.cases", "cases.toml")["trades"]
 """What stands behind a clamp: rows of the table."""
 
 

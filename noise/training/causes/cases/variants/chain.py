@@ -10,12 +10,6 @@ from scipy.signal import butter, fftconvolve, lfilter
 
 from sim.chain import HIGHEST_SHARE, filter_pressure, padded_sum, resonance
 
-_LONGEST = 0.25
-"""Waves are followed so long at most [s]."""
-
-_BAND = (200.0, 6000.0)
-"""In which a level is taken [Hz]."""
-
 
 def _on_chain(a, change):
     """Change impulse responses; neutral at strength 0."""
@@ -60,7 +54,7 @@ def waveguide(rate, first, reflection, dullness):
     """
     way = max(2, round(rate / first))
     passes = int(np.log(1e-4) / np.log(abs(reflection)))
-    n = int(min(passes * way + way, max(_LONGEST * rate, 3 * way)))
+    n = int(min(passes * way + way, max(0.25 * rate, 3 * way)))
     echoes = np.zeros(n)
     echo = reflection * np.array([0.5 * dullness, 1.0 - dullness, 0.5 * dullness])
     wave = echo
@@ -253,7 +247,7 @@ def _band_level(response, rate):
     """Root mean square of what an impulse response passes in the band."""
     n = max(response.size, 2048)
     frequency = np.fft.rfftfreq(n, 1.0 / rate)
-    inside = (frequency >= _BAND[0]) & (frequency <= _BAND[1])
+    inside = (frequency >= 200.0) & (frequency <= 6000.0)
     return float(np.sqrt(np.mean(np.abs(np.fft.rfft(response, n))[inside] ** 2)))
 
 

@@ -11,29 +11,10 @@ from noise.diagnosis.cases.draws import curve, exponential, far_curve, noise
 from noise.training.causes.cases.variants import hooks
 from sim.effects import EFFECTS
 
-_STEEPEST = 0.5
-"""Rise of torque with speed over the kinetic one that the solver follows well [s/rad]."""
-
-_RENEWAL = 4e-4
-"""Angle after which a slip has made the contact anew [rad]."""
-
-_MOST_CREEP = 0.95
-"""Share of the shaft's speed that a contact creeps at most."""
-
 _SOFTEST = 0.78
 """Share of the stiffness lost at strength 1, so that the torque still rises with the twist."""
 
-_SHORTEST = 2e-5
-"""Relaxation time that the integration resolves [s]."""
-
-_SOFTEST_SHAFT = 2.5e-3
-"""Compliance at strength 1: 400 Nm/rad, less than the elastomer's stiffness [rad/Nm]."""
-
-_HIGHEST = 2.0 * math.pi * 4e3
-"""Of a shaft's own frequencies [rad/s]."""
-
 _N_DRAWS = 4096
-_N_NOISE = 2**14
 
 
 def on_contact(hook, *numbers, n_states=1):
@@ -52,7 +33,8 @@ def strengthens(a, shape, speed, lag=0.0, height=1.0):
     gain = 1.5 * height  # of strength 1, whatever the strength: forms stay what they are
     u = np.linspace(0.0, 1.0, shape.size - 1)
     slope = float(np.max(np.gradient(shape[1:], u) * (1.0 - u) ** 2))
-    speed = max(speed, gain * slope / _STEEPEST)
+    # The solver follows a rise of up to 0.5 s/rad over the kinetic torque.
+    speed = max(speed, gain * slope / 0.5)
     return on_contact(hooks.rate_dependence_hook, [a * gain, speed, lag], shape)
 
 
@@ -61,11 +43,11 @@ def ages(
 ):
     """Let the contact grow stronger in stick."""
     gain = gain or (0.97 if level == 1.0 else 1.0 if whole else drop_gain)
-    header = [gain * a, time, renewal or _RENEWAL, level, whole, renewal > 0.0, kinetic]
+    header = [gain * a, time, renewal or 4e-4, level, whole, renewal > 0.0, kinetic]
     return on_contact(hooks.ageing_hook, header, shape)
 
 
-def creeps(a, shape, lag=0.0, speed=0.0, fading=0.0, lost=0.0, most=_MOST_CREEP):
+def creeps(a, shape, lag=0.0, speed=0.0, fading=0.0, lost=0.0, most=0.95):
     """Let the contact creep before it slips; what has slipped may carry less."""
     return on_contact(hooks.creep_hook, [most * a, lag, speed, fading, a * lost], shape)
 
@@ -85,8 +67,8 @@ def films(a, shape, torque, drop, roughness, scale, low, widths, patches=0.0, *,
     header = [a, torque, drop, roughness, patches > 0.0, patches or scale, fixed, per]
 
     def numbers(_form, _values, rng):
-        time_series = noise(rng, _N_NOISE, points, low, high)
-        return np.concatenate([np.array(header, float), shape, [_N_NOISE], time_series])
+        time_series = noise(rng, 2**14, points, low, high)
+        return np.concatenate([np.array(header, float), shape, [2**14], time_series])
 
     return {"contact": hooks.film_hook, "pack": numbers, "n_states": 1}
 
@@ -124,7 +106,7 @@ def branches(a, times, replaced, shares=None, kind=2.0, twist=1.0, exponent=0.0,
     """Put Maxwell branches beside the spring, or let them take the place of a part of it."""
     if shares is None:
         shares = times**-exponent
-    rates = 1.0 / np.maximum(times, _SHORTEST)
+    rates = 1.0 / np.maximum(times, 2e-5)
     most = 0.85 if lost else 0.9 if kind < 2.0 else 3.0
     parts = most * a * shares / shares.sum()
     header = [times.size, kind, twist, most * a * replaced]
@@ -146,10 +128,10 @@ def yielding_shaft(
     """Let the shaft yield: rigid at strength 0."""
     if a == 0.0:
         return on_contact(hooks.compliance_hook, np.zeros(11), n_states=2)
-    stiffness = 1.0 / (_SOFTEST_SHAFT * a)
+    stiffness = 400.0 / a  # at strength 1 less than the elastomer's
     dry_lag = dry_torque / stiffness / built or 1.0
     stiffest = stiffness * (1.0 + branch + 0.7 * (dry_torque > 0.0) + 3.0 * cubic)
-    inertia = max(inertia, stiffest / _HIGHEST**2)
+    inertia = max(inertia, stiffest / (2.0 * math.pi * 4e3) ** 2)
     damping = 2.0 * damping_ratio * math.sqrt(stiffness * inertia)
     numbers = [
         inertia, stiffness, softening, cubic, lag / stiffness, damping, dry_torque, dry_lag, branch,

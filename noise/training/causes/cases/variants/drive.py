@@ -11,14 +11,8 @@ from noise.diagnosis.cases.draws import telegraph
 from noise.training.causes.cases.variants.sensors import on_signals
 from sim.effects.slip_pulse import torque_drops
 
-_LEAST_SPEED = 0.05
-"""Of the mean one, so that the shaft does not turn back."""
-
 _REFERENCE_DROP = 6.94
 """As of `sim.effects.slip_pulse` [Nm]."""
-
-_STRONGEST = 800.0
-"""Force of strength 1 at that drop [N]."""
 
 
 def uneven(a, form, most=0.6, **numbers):
@@ -29,7 +23,7 @@ def uneven(a, form, most=0.6, **numbers):
         q = q - q.mean()
         size = float(q.std())
         depth = most * a * math.sqrt(0.5) / size if size > 1e-9 else 0.0
-        return speed * (1.0 + np.maximum(depth * q, _LEAST_SPEED - 1.0))
+        return speed * (1.0 + np.maximum(depth * q, -0.95))  # it does not turn back
 
     return {"drive": drive}
 
@@ -107,7 +101,7 @@ def impacts(
         # Other impacts in each run, but the same in the same run.
         own = np.random.default_rng([seed, where.size, int(where.sum())])
         excess = np.maximum((drops - threshold) / (_REFERENCE_DROP - threshold), 0.0)
-        peaks = _STRONGEST * a * np.minimum(excess, 3.0) ** power
+        peaks = 800.0 * a * np.minimum(excess, 3.0) ** power
         peaks *= np.exp(uneven * own.standard_normal(peaks.size)) * own.choice(senses, peaks.size)
         peaks[own.random(peaks.size) > chance] = 0.0
         starts = where + late * motion.rate * own.random(where.size)

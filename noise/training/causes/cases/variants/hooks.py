@@ -34,9 +34,6 @@ from sim.contact import (
     slipless,
 )
 
-_MOST_CREEP = 0.95
-"""Share of the shaft's speed."""
-
 
 @njit(cache=True, error_model="numpy")
 def _cubic(a, b, c, d, x):
@@ -124,7 +121,7 @@ def creep_hook(context, values, state, state_rates, contact) -> None:
             f /= 1.0 + max(context[STICK_TIME], 0.0) / values[3]
         share = values[0] * f
         if values[2] > 0.0:
-            share = min(share * values[2] / abs(context[SHAFT_SPEED]), _MOST_CREEP)
+            share = min(share * values[2] / abs(context[SHAFT_SPEED]), 0.95)
         contact[CREEP] += share * (1.0 - contact[CREEP])
 
 

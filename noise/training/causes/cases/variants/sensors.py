@@ -14,9 +14,6 @@ from noise.training.causes.cases.variants.hooks import droop
 _DECIBELS = 20.0
 """Of a gain's error at strength 1."""
 
-_LEAST = 0.02
-"""Of the gain that is left."""
-
 _DEEPEST = 0.9
 """Share of the peak that is cut off at strength 1."""
 
@@ -198,8 +195,6 @@ def _factor(sense, a):
 
 def gains(a, form, sense, shares, way="", **numbers):
     """Read channels with a wrong gain, the same all the time."""
-    if not isinstance(way, str):  # a number of the form's own
-        numbers["way"], way = way, ""
     change = _GAINS[way or form]
     return _on_channels(a, shares, lambda *run: change(*run, a=a, sense=sense, **numbers))
 
@@ -210,11 +205,11 @@ def _each_run(x, share, _rate, rng, *, a, sense):
     return x * np.exp(spread * share * np.clip(rng.standard_normal(), -2.0, 2.0))
 
 
-def _tilted(x, share, rate, _rng, *, a, sense, corner, steep, way):
+def _tilted(x, share, rate, _rng, *, a, sense, corner, steep, rising):
     """Let the error grow or fall with frequency, by no simple filter."""
     error = _factor(sense, 0.8 * a) - 1.0
     ratio = np.maximum(np.fft.rfftfreq(x.size, 1.0 / rate), 1.0) / corner
-    mirrored = np.fft.rfft(x - x.mean()) * (1.0 / (1.0 + ratio ** (way * steep)))
+    mirrored = np.fft.rfft(x - x.mean()) * (1.0 / (1.0 + ratio ** (rising * steep)))
     return x + share * error * np.fft.irfft(mirrored, x.size)
 
 
@@ -259,7 +254,7 @@ def varying_gains(a, form, sense, shares, **numbers):
     """Let a gain be wrong by more or less over time."""
     error = _factor(sense, 0.7 * a) - 1.0
     return _on_channels(a, shares, lambda x, share, *run: x * np.maximum(
-        1.0 + error * share * _COURSES[form](x.size, *run, **numbers), _LEAST))  # fmt: skip
+        1.0 + error * share * _COURSES[form](x.size, *run, **numbers), 0.02))  # fmt: skip
 
 
 def delays(a, form, latest, shares, **numbers):
