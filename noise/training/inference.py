@@ -349,18 +349,11 @@ def _cases() -> Iterator[tuple[int, int, int, int]]:
     return itertools.product(range(len(QUANTITIES)), (0, 1), range(1, 1 << len(KINDS)), range(4))
 
 
-N_TRAINING = 1800
-"""Number of runs to grow the forests."""
-
-N_CALIBRATION = 1600
-"""Number of runs to calibrate the intervals."""
-
-
 def train_inference(
     *,
     seed: int = 0,
-    n_training: int = N_TRAINING,
-    n_calibration: int = N_CALIBRATION,
+    n_training: int = 1800,
+    n_calibration: int = 1600,
     progress: Callable[[Iterable[RunSample], int], Iterable[RunSample]] | None = None,
 ) -> Inference:
     """Train the inference of conditions; the same seed gives the same model.

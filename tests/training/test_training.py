@@ -10,7 +10,7 @@ from noise.classifier import LABELS, load_classifier
 from noise.classifier.model import has_more_than_sound
 from noise.labels.windows import FEATURE_NAMES
 from noise.training.classifier import cross_fitting
-from noise.training.classifier.cross_fitting import N_FOLDS, may_sound, parts
+from noise.training.classifier.cross_fitting import N_FOLDS, parts
 from noise.training.classifier.fit import learn, load_real_sounds, train
 from noise.training.classifier.own_recordings import OWN_WEIGHT
 from noise.training.classifier.samples import Sample, draw_sample
@@ -103,12 +103,6 @@ def test_what_is_scored_was_not_learned_by_what_scores_it():
     part = parts(sounds, seed=1)
     assert set(part.tolist()) == set(range(N_FOLDS))
     assert all(len({part[3 * i + j] for j in range(3)}) == 1 for i in range(10))
-
-
-def test_a_rig_is_not_expected_to_bark():
-    assert may_sound("dog", "any")
-    assert not may_sound("dog", "rig")
-    assert not may_sound("019_Keyboard", "car")
 
 
 def test_real_sounds_are_free_to_learn_from_and_say_whose_they_are():

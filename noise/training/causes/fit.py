@@ -101,10 +101,6 @@ def grow_cause_trees(
     return as_arrays(grown, base)
 
 
-N_ROUNDS = 450
-N_COLUMNS = 1000
-"""Of the evidence that are kept: what tells nothing only blurs."""
-
 FALSE_ALARMS = 0.06
 """Share of cases without a cause that may raise the alarm, at the setting, of trees that have seen
 fewer cases than those that answer; one in sixty did of those of the second rig's development
@@ -131,9 +127,7 @@ class Known:
     seed: int = 0
 
 
-def train_posterior(
-    cases: Sequence[Known], *, seed: int = 0, n_rounds: int = N_ROUNDS
-) -> Posterior:
+def train_posterior(cases: Sequence[Known], *, seed: int = 0, n_rounds: int = 450) -> Posterior:
     """Grow and calibrate a cause posterior.
 
     Parameters
@@ -202,7 +196,9 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     forest = ExtraTreesClassifier(
         80, min_samples_leaf=2, max_features=0.1, n_jobs=-1, random_state=seed
     ).fit(x[some], y[some])
-    most = np.argsort(-forest.feature_importances_, kind="stable")[:N_COLUMNS]
+    most = np.argsort(-forest.feature_importances_, kind="stable")[
+        :1000
+    ]  # what tells nothing only blurs
     return np.sort(most).astype(np.int64)
 
 
@@ -303,10 +299,6 @@ def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) ->
     return np.asarray(minimize(cost, prior, jac=True, method="BFGS", tol=1e-8).x)
 
 
-_SAME_NOISE, _SAME_SPEED = 0.2, 8e-3
-"""Relative differences up to which estimates are taken for the same."""
-
-
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
     """Draw cases of one rig and summarise them; those that cannot be simulated are left out.
 
@@ -361,7 +353,7 @@ class _Shared(NominalNumbers):
         c = known_condition(recording.condition)
         known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
         near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
-        if abs(near - c.speed) > _SAME_SPEED * abs(c.speed):
+        if abs(near - c.speed) > 8e-3 * abs(c.speed):
             known.append(c.speed)
             near = c.speed
         return super().moments(replace(recording, condition=replace(c, speed=near)))
@@ -375,7 +367,7 @@ def _alike(one: Sensors, other: Sensors) -> bool:
             return False
         levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
         least = 0.1 * a.step  # less than that is lost in the rounding
-        if not math.isclose(*levels, rel_tol=_SAME_NOISE, abs_tol=least):
+        if not math.isclose(*levels, rel_tol=0.2, abs_tol=least):
             return False
     return True
 

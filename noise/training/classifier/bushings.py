@@ -108,9 +108,7 @@ def random_design(rng: Rng) -> Design:
     return Design(rig, speed, interference, support)
 
 
-@lru_cache
-def _material_rig(material: str) -> Rig:
-    return load_material_rig(material)
+_material_rig = lru_cache(load_material_rig)
 
 
 def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> Fit:

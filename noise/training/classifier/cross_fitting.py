@@ -69,9 +69,6 @@ FALSE_NAMES_AN_HOUR = np.array([15.0, 8.0, 20.0])
 """Maximum number of false creaks, squawks and squeals in real backgrounds per hour [1/h], chosen so
 that real creaks and squeals of other sources are named."""
 
-_LEAST, _MOST = 0.25, 0.97
-"""Range of the thresholds [-]."""
-
 
 class Rows(NamedTuple):
     """Training rows: windows of sounds under several masks of their channels.
@@ -491,7 +488,7 @@ def fit_thresholds(backgrounds: Sequence[Array]) -> tuple[float, float, float]:
     hours = HOP * max(1, sum(map(len, backgrounds))) / 3600.0
     # One false name in a short time is not significant.
     most = np.maximum(FALSE_NAMES_AN_HOUR, 1.0 / hours)
-    limits = np.append(np.arange(_LEAST, _MOST, 0.01), _MOST)
+    limits = np.append(np.arange(0.25, 0.97, 0.01), 0.97)
     low, high = np.zeros(NOISES, dtype=int), np.full(NOISES, limits.size - 1)
     while (low < high).any():  # bisection: higher thresholds give fewer names
         middle = (low + high) // 2

@@ -33,6 +33,7 @@ from noise.base.arrays import Array, Rng
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.classifier.model import Classifier
+from noise.labels.segmentation import NOISES
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording
 from noise.training.classifier.cross_fitting import (
@@ -63,18 +64,8 @@ _KIND = ModelKind(
     ("noise.training.classifier", "real_sounds.npz"),
 )
 
-_LABELS = {
-    "creak": "creak",
-    "squawk": "squawk",
-    "squeal": "squeal",
-    "bowed": "squawk",
-    "background": "unknown",
-    "background: vehicle": "unknown",
-}
-"""Labels by class; other classes are ambiguous."""
-
-_WEIGHT_OF_NOISE, _WEIGHT_OF_OTHERS = 15.0, 4.0
-"""Weights of real sounds, relative to a simulated sample [-]; chosen on left-out sources."""
+_CLASSES = {"bowed": "squawk", "background": "unknown", "background: vehicle": "unknown"}
+"""Labels of classes besides the three noises; others are ambiguous."""
 
 _VARIATIONS = 20
 """Number of variations of each noise: parts at other speeds, in other places and recorders."""
@@ -109,7 +100,8 @@ def describe_folder(folder: Path) -> RealSounds:
         free = re.compile(r"(skid\.ogg )?(CC0|CC BY [34]|CC-BY |MIT)")
         rows = [row for row in csv.DictReader(table) if free.match(row["licence"])]
     for number, row in enumerate(rows):
-        label = _LABELS.get(row["class"])
+        noise = row["class"] in LABELS[:NOISES]
+        label = row["class"] if noise else _CLASSES.get(row["class"])
         # The friction of saws is neither a noise nor a background.
         if label is None or "hacksaw" in row["file"] or "hand_saw" in row["file"]:
             continue
@@ -163,8 +155,8 @@ def _source(name: str, licence: str) -> str:
 def _sample(
     features: NDArray[np.float32], label: str, source: str, kind: str, *, varied: bool = False
 ) -> Sample:
-    weight = _WEIGHT_OF_OTHERS if label == "unknown" else _WEIGHT_OF_NOISE
-    weight = weight / _VARIATIONS if varied else weight
+    # Relative to a simulated sample; chosen on left-out sources
+    weight = (4.0 if label == "unknown" else 15.0) / (_VARIATIONS if varied else 1.0)
     return Sample(features, label, source, weight, kind, real=True, varied=varied)
 
 

@@ -139,7 +139,8 @@ def slide(drive: Array, rate: float, *, ageing_time: float, scatter: float, rng:
     return Slips(index / rate, size)
 
 
-def _events(drive: Array, rate: float, ageing_time: float, scattered: Array) -> tuple[Array, Array]:
+@njit(cache=True)
+def _slips(drive: Array, rate: float, ageing_time: float, scattered: Array) -> tuple[Array, Array]:
     index = np.empty(drive.size)
     size = np.empty(drive.size)
     count = 0
@@ -158,9 +159,6 @@ def _events(drive: Array, rate: float, ageing_time: float, scattered: Array) -> 
             drawn = 0.0
             stick = 0.0
     return index[:count].copy(), size[:count].copy()
-
-
-_slips = njit(cache=True)(_events)
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,7 +316,8 @@ def amplitudes(
     return np.asarray(_solved(growth, detuning, coupling, kicks[0] + 1j * kicks[1]))
 
 
-def _averaged(
+@njit(cache=True)
+def _solved(
     growth: Array, detuning: Array, coupling: Array, kicks: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     n_modes, m = growth.shape
@@ -337,9 +336,6 @@ def _averaged(
                 now[i] *= 3.0 / abs(now[i])
         solved[:, k] = now
     return solved
-
-
-_solved = njit(cache=True)(_averaged)
 
 
 def carried(

@@ -25,9 +25,6 @@ from noise.recordings import find_recordings
 from noise.recordings.files import files_below, is_file, open_blocks
 from noise.training.classifier.samples import Sample
 
-LONGEST_WINDOW = 1.0
-"""Maximum duration of the equal windows of a stretch [s]."""
-
 SHORTEST_WINDOW = 0.1
 """Minimum duration of a labelled stretch [s]."""
 
@@ -183,7 +180,8 @@ def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iter
                     "the recording"
                 )
                 continue
-            n = math.ceil((last - first) / (LONGEST_WINDOW * blocks.rate))
+            # Equal windows of at most a second
+            n = math.ceil((last - first) / blocks.rate)
             edges = np.linspace(first, last, n + 1).round().astype(int)
             # At most 60 windows, spread evenly
             chosen = np.unique(np.linspace(0, n - 1, min(n, 60)).round().astype(int))

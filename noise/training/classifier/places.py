@@ -218,14 +218,13 @@ def _inverter(turns: Array, rate: float, rng: Rng) -> Array:
     return sound
 
 
-_BLADES = (5.0, 7.0, 8.0, 9.0, 11.0)
-
-
 def hydraulic_hall(n: int, rate: float, rng: Rng) -> Array:
     """Return noise of axial piston pumps at mains speed, valves, and a fan."""
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 3))):
-        turns = _mains_turns(rng) * wavering(n, rate, 0.3, 0.004, rng)
+        # An asynchronous motor of two or four poles at 50 or 60 Hz
+        mains = float(rng.choice((25.0, 30.0, 50.0, 60.0))) * rng.uniform(0.95, 0.995)
+        turns = mains * wavering(n, rate, 0.3, 0.004, rng)
         pump = orders(
             turns, rate, 1.0, float(rng.choice((7.0, 9.0, 11.0))), rng.uniform(0.0, 1.2), rng
         )
@@ -265,7 +264,14 @@ def laboratory(n: int, rate: float, rng: Rng) -> Array:
     sound = _air(n, rate, rng)
     for _ in range(int(rng.integers(1, 4))):
         turns = rng.uniform(12.0, 80.0) * wavering(n, rate, 0.3, 0.01, rng)
-        fan = orders(turns, rate, 1.0, float(rng.choice(_BLADES)), rng.uniform(0.5, 2.0), rng)
+        fan = orders(
+            turns,
+            rate,
+            1.0,
+            float(rng.choice((5.0, 7.0, 8.0, 9.0, 11.0))),
+            rng.uniform(0.5, 2.0),
+            rng,
+        )
         sound += 10.0 ** rng.uniform(-1.6, -0.2) * fan / fan.std()
     return sound
 
@@ -282,11 +288,6 @@ def bench_with_a_motor(n: int, rate: float, rng: Rng) -> Array:
 def _air(n: int, rate: float, rng: Rng) -> Array:
     air = shaped_noise(n, rate, _SPECTRA["ventilation"], rng)
     return in_a_room(air, rate, rng) if rng.random() < 0.2 else air
-
-
-def _mains_turns(rng: Rng) -> float:
-    """Return the speed of an asynchronous motor of two or four poles at 50 or 60 Hz [1/s]."""
-    return float(rng.choice((25.0, 30.0, 50.0, 60.0))) * rng.uniform(0.95, 0.995)
 
 
 HALLS: Mapping[str, Callable[[int, float, Rng], Array]] = {

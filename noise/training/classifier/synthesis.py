@@ -298,7 +298,6 @@ def wavering(n: int, rate: float, frequency: float, depth: float, rng: Rng) -> A
     return np.asarray(np.exp(depth * wandering(n, rate, frequency, rng)))
 
 
-Sound = Array
 Row = Mapping[str, Any]
 
 
@@ -348,7 +347,7 @@ class Draws(dict[str, float]):
         return int(self(spec))
 
 
-def synthesised(row: Row, n: int, rate: float, rng: Rng) -> Sound:
+def synthesised(row: Row, n: int, rate: float, rng: Rng) -> Array:
     """Return a random sound of a row.
 
     Parameters
@@ -389,10 +388,10 @@ def synthesised(row: Row, n: int, rate: float, rng: Rng) -> Sound:
     return _changed(sound, row, rate, draws) + 1e-5 * rng.standard_normal(n)
 
 
-def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
+def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Array:
     """Return the events of a layer in time."""
 
-    def event(m: int, turn: int) -> Sound:
+    def event(m: int, turn: int) -> Array:
         each = draws.with_names(layer.get("each"))
         parts = layer.get("parts", [layer])
         if "either" in layer:
@@ -423,8 +422,8 @@ def _in_time(layer: Row, n: int, rate: float, draws: Draws) -> Sound:
 
 
 def repeated(
-    n: int, rate: float, when: Row, make: Callable[[int, int], Sound], draws: Draws
-) -> Sound:
+    n: int, rate: float, when: Row, make: Callable[[int, int], Array], draws: Draws
+) -> Array:
     """Return random consecutive events; the first may have begun before.
 
     Parameters
@@ -469,7 +468,7 @@ def _ends(pair: list[float]) -> tuple[float, float]:
     return min(pair), max(pair)
 
 
-def event_times(when: Row, duration: float, draws: Draws) -> Sound:
+def event_times(when: Row, duration: float, draws: Draws) -> Array:
     """Return random times [s]: periodic, random, with gamma-distributed gaps, or after a start.
 
     Examples
@@ -497,14 +496,14 @@ def event_times(when: Row, duration: float, draws: Draws) -> Sound:
     return times
 
 
-def _strengths(when: Row, count: int, draws: Draws) -> Sound:
+def _strengths(when: Row, count: int, draws: Draws) -> Array:
     if "pareto" in when:
         size = np.minimum(draws.rng.pareto(draws(when["pareto"]), count) + 0.05, 60.0)
         return np.asarray(size * draws.rng.choice((-1.0, 1.0), count))
     return draws.rng.lognormal(0.0, draws(when.get("scatter", 0.0)), count)
 
 
-def _made(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
+def _made(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Array:
     """Return an event of `m` samples; a blow has its own length."""
     rng, source = draws.rng, part["source"]
     if source == "blow":
@@ -528,7 +527,7 @@ def _made(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
     return envelope(_through(sound, part, rate, draws), part.get("shape", {}), rate, draws)
 
 
-def _toned(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
+def _toned(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Array:
     pitch = pitch_course(part["pitch"], m, rate, draws, turn)
     if part["source"] == "voice":
         formants = tuple(draws(part.get("size", 1.0)) * draws(f) for f in part["formants"])
@@ -543,7 +542,7 @@ def _toned(part: Row, m: int, rate: float, draws: Draws, turn: int) -> Sound:
     return sound
 
 
-def _firing(pitch: Sound, rate: float, rng: Rng) -> Sound:
+def _firing(pitch: Array, rate: float, rng: Rng) -> Array:
     """Return unequal firing pulses through an exhaust, with modulated noise."""
     phase = 2 * np.pi * np.cumsum(pitch) / rate
     phase += 0.5 * rng.random() ** 3 * coloured_noise(pitch.size, 1.8, rng)
@@ -558,7 +557,7 @@ def _firing(pitch: Sound, rate: float, rng: Rng) -> Sound:
     return np.asarray(sound + rng.uniform(0.02, 0.7) * sound.std() * noise)
 
 
-def _bubble(m: int, rate: float, rng: Rng) -> Sound:
+def _bubble(m: int, rate: float, rng: Rng) -> Array:
     """Return a decaying chirp that rises by up to an octave."""
     time = np.arange(max(m, 16)) / rate
     start = log_uniform(400.0, 5000.0, rng)
@@ -569,7 +568,7 @@ def _bubble(m: int, rate: float, rng: Rng) -> Sound:
     return np.asarray(sound)
 
 
-def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) -> Sound:
+def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) -> Array:
     """Return the random pitch [Hz] of an event of `m` samples.
 
     Examples
@@ -610,7 +609,7 @@ def pitch_course(spec: Any, m: int, rate: float, draws: Draws, turn: int = 0) ->
     return np.asarray(np.clip(pitch, 5.0, 0.45 * rate))
 
 
-def _through(sound: Sound, part: Row, rate: float, draws: Draws) -> Sound:
+def _through(sound: Array, part: Row, rate: float, draws: Draws) -> Array:
     """Return a sound with resonances added to its direct part."""
     if "through" not in part:
         return sound
@@ -622,13 +621,13 @@ def _through(sound: Sound, part: Row, rate: float, draws: Draws) -> Sound:
     return np.asarray(resounding)
 
 
-def _changed(sound: Sound, row: Row, rate: float, draws: Draws) -> Sound:
+def _changed(sound: Array, row: Row, rate: float, draws: Draws) -> Array:
     for change in row.get("changes", ()):
         sound = sound * _course(change, sound.size, rate, draws)
     return sound
 
 
-def _course(change: Row, n: int, rate: float, draws: Draws) -> Sound:
+def _course(change: Row, n: int, rate: float, draws: Draws) -> Array:
     """Return a random factor over time."""
     ((kind, specs),) = change.items()
     rng, time = draws.rng, np.arange(n) / rate

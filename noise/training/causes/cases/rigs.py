@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     Course = Callable[[Array], Array]
 
 
-_STEP = 5e-4
-"""Of the times at which a course of speed is given [s]."""
-
 _LATEST = 0.55
 """Share of a recording after which the shaft turns evenly, to a per mille of its speed."""
 
@@ -72,7 +69,7 @@ def draw_start(
     (array([0., 2.]), 0.0)
     """
     course = STARTS[name](seconds, rng)
-    time = np.arange(0.0, seconds + 2.0 * _STEP, _STEP)
+    time = np.arange(0.0, seconds + 1e-3, 5e-4)
     factor = course(time)
     before = 0.0 if factor[0] == 0.0 else settling
     return LoggedSpeed(time + before, speed * factor), before
