@@ -93,10 +93,18 @@ def test_of_two_fits_of_one_effect_the_one_in_which_the_other_shows_less_counts(
     assert both < alone
 
 
-def test_how_much_a_fit_closes_does_not_change_the_odds_of_learned_effects():
-    before = chances({PARTIAL: 0.3, WEAK: 0.2})
-    now = updated(before, fits_of(6.0, 5.9, {PARTIAL: 1.1, WEAK: 4.5}))
-    assert now[PARTIAL] / now[WEAK] == pytest.approx(before[PARTIAL] / before[WEAK])
+@given(gaps, gaps, gaps)
+def test_of_two_fits_the_one_that_leaves_less_is_favoured(recalibrated, one, other):
+    before = chances({PARTIAL: 0.3, WEAK: 0.3})
+    now = updated(before, fits_of(40.0, recalibrated, {PARTIAL: one, WEAK: other}))
+    assert (now[PARTIAL] - now[WEAK]) * (other - one) >= 0.0
+
+
+def test_where_parameters_close_all_they_gain_and_names_keep_their_odds():
+    before = chances({PARTIAL: 0.5}, unknown=0.4)
+    now = updated(before, fits_of(6.0, 1.0, {PARTIAL: 1.0}))
+    assert now[PARTIAL] / now[UNKNOWN] == pytest.approx(before[PARTIAL] / before[UNKNOWN])
+    assert now[PARAMETERS] / now[UNKNOWN] > before[PARAMETERS] / before[UNKNOWN]
 
 
 def test_an_effect_of_the_users_own_gains_by_what_it_closes_and_loses_by_what_it_opens():
