@@ -336,7 +336,7 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     'The rig file describes the rig: the recording deviates 1.1 times as much as repeat measurements
       do.'
     >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
-    'The rig file describes 1 of 2 recordings: they deviate 1.1 to 6.1 times as much as repeat
+    'The rig file describes 1 of 2 recordings: the recordings deviate 1.1 to 6.1 times as much as repeat
       measurements do. Farthest is run02.wav, most in the torque (8.0 times). All recordings
       together deviate 0.9 times as much (p = 0.60).'
     """
@@ -353,7 +353,7 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
         start = "The rig file describes the rig but for a difference that shows on a closer look"
     least, most = (gap_number(end(one.gap for one in rows)) for end in (min, max))
     reach = most if least == most else f"{least} to {most}"
-    deviate = "the recording deviates" if n == 1 else "they deviate"
+    deviate = "the recording deviates" if n == 1 else "the recordings deviate"
     sentence = f"{start}: {deviate} {reach} times as much as repeat measurements do."
     if n_far:
         sentence += f" {_farthest(rows)}."
