@@ -10,7 +10,7 @@ Simulate: `load_rig`, `load_material_rig`, `material_names`, `simulate`, `Run`, 
 `Sensors`, `Sensor`, `ConstantSpeed`, `SpeedRamp`, `Oscillation`, `LoggedSpeed`, `Condition`,
 `FIXED`.
 
-Listen: `find_recordings`, `read_recording`, `read_calibrator`, `Calibration`, `write_recording`,
+Listen: `find_recordings`, `read_recording`, `read_calibrator`, `write_recording`,
 `Recording`, `Channel`, `plot_run`, `write_picture`.
 
 Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segments`, `LABELS`,

@@ -18,8 +18,10 @@ MODULES = sorted(
         for recipes in (
             "diagnosis/cases",
             "training/causes/cases",
-            "training/classifier/augmentation",
-            "training/classifier/background_sounds",
+            "training/classifier/background_sounds.py",
+            "training/classifier/places.py",
+            "training/classifier/recorder.py",
+            "training/classifier/synthesis.py",
         )
     )  # rows of tables, whose common signature is described once
 )

@@ -221,7 +221,7 @@ def render(
         Of these recordings.
     full_scale : FullScale
     gap : float
-        As they were measured.
+        Silence between two recordings [s].
 
     Returns
     -------

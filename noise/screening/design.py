@@ -74,7 +74,7 @@ class Tolerance:
     spread : float, optional
         Relative standard deviation [-]; None where there are limits.
     low, high : float
-        Limits, in the unit of `PARAMETERS`.
+        Limits [unit of the parameter].
     """
 
     name: str

@@ -209,7 +209,7 @@ class Standing:
         Returns
         -------
         float
-            NaN where the shaft swings.
+            [rad/s]; NaN where the shaft swings.
         """
         choose = min if name.startswith("margin") else max
         return choose((getattr(one, name) for one in self.critical), default=math.nan)

@@ -51,6 +51,12 @@ class Sweep:
     conditions : tuple of KnownCondition
     features : dict of str to ndarray, shape (n_conditions,)
         By the names of `FEATURES`, in their units.
+
+    Examples
+    --------
+    >>> at = KnownCondition(speed=5.0)
+    >>> Sweep((at,), {name: np.zeros(1) for name in FEATURES}).conditions[0].speed
+    5.0
     """
 
     conditions: tuple[KnownCondition, ...]
