@@ -336,8 +336,8 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
     'The rig file describes the rig: the recording deviates 1.1 times as much as repeat measurements
       do.'
     >>> agreement_sentence(replace(nothing, verdict=("unknown",), agreement=(slow, fast)))
-    'The rig file describes 1 of 2 recordings: the recordings deviate 1.1 to 6.1 times as much as repeat
-      measurements do. Farthest is run02.wav, most in the torque (8.0 times). All recordings
+    'The rig file describes 1 of 2 recordings: the recordings deviate 1.1 to 6.1 times as much as
+      repeat measurements do. Farthest is run02.wav, most in the torque (8.0 times). All recordings
       together deviate 0.9 times as much (p = 0.60).'
     """
     rows = diagnosis.agreement
