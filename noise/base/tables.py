@@ -1,9 +1,9 @@
-"""Reading and writing of tables as CSV, JSON Lines or Parquet, by the suffix of the file.
+"""Reading and writing of tables as CSV, Excel, JSON Lines or Parquet, by the suffix of the file.
 
 All formats store the same values: missing, undefined and infinite numbers are empty; text is
 escaped by `noise.base.progress.readable`; numbers have as many digits as reproduce them exactly.
-CSV writes the infinite stiffness of a bolted clamp as ``fixed``. Tables are written atomically, and
-a target that cannot be written is refused before the work.
+CSV and Excel write the infinite stiffness of a bolted clamp as ``fixed``. Tables are written
+atomically, and a target that cannot be written is refused before the work.
 
 CSV is read as spreadsheets write it. Excel in a locale with decimal commas writes semicolons and a
 UTF-8 byte order mark, its "Unicode text" is UTF-16 with tabs, and older versions use a code page.
@@ -24,20 +24,27 @@ import re
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from importlib import import_module
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, ExcessError, parse_json, reading
+from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
 from noise.base.files import atomic
 from noise.base.progress import readable
 
 Cell = bool | int | float | str | None
 """Value of a cell that every table format can store."""
 
-TABLE_ENDINGS = (".csv", ".jsonl", ".parquet")
+TABLE_ENDINGS = (".csv", ".xlsx", ".jsonl", ".parquet")
 """Suffixes of the table formats."""
+
+_LIBRARIES = {
+    ".xlsx": ("openpyxl", "excel", "an Excel workbook needs"),
+    ".parquet": ("pyarrow", "parquet", "Parquet needs"),
+}
+"""Module, extra and text of the formats that need a library."""
 
 _LABEL_COLUMN = "label_source"
 """Column that identifies a label table."""
@@ -66,12 +73,15 @@ def check_table_path(path: str | Path | None, columns: Collection[str] = (_LABEL
     --------
     >>> check_table_path("features.ods")
     Traceback (most recent call last):
-    models.errors.ParameterError: features.ods: tables end in .csv, .jsonl or .parquet
+    models.errors.ParameterError: features.ods: tables end in .csv, .xlsx, .jsonl or .parquet
     """
     if path is None:
         return
     path = Path(path)
     _check_format(path)
+    if path.suffix.lower() == ".xlsx" and path.is_file():
+        with reading(path, "table"):  # which refuses further sheets, since they would be lost
+            next(iter(_workbook_lines(path)), None)
     existing = table_columns(path) if _LABEL_COLUMN not in columns and path.is_file() else ()
     if _LABEL_COLUMN in {name.strip().casefold() for name in existing}:
         raise ParameterError(
@@ -83,15 +93,15 @@ def _check_format(path: Path) -> None:
     """Refuse an unknown suffix, a folder, or a format whose library is not installed."""
     ending = path.suffix.lower()
     if ending not in TABLE_ENDINGS:
-        raise ParameterError(f"{path}: tables end in .csv, .jsonl or .parquet")
+        raise ParameterError(f"{path}: tables end in .csv, .xlsx, .jsonl or .parquet")
     if path.is_dir():
         raise ParameterError(f"{path}: is a folder; name a file to write")
-    if ending == ".parquet":
+    if ending in _LIBRARIES:
+        package, extra, needs = _LIBRARIES[ending]
         try:
-            import pyarrow as pa  # noqa: F401
+            import_module(package)
         except ImportError:
-            needs = not_installed(f"{path}: Parquet needs", "pyarrow", "parquet")
-            raise ParameterError(needs) from None
+            raise ParameterError(not_installed(f"{path}: {needs}", package, extra)) from None
 
 
 def write_table(
@@ -135,6 +145,8 @@ def write_table(
     with atomic(path) as temporary:
         if path.suffix.lower() == ".parquet":
             _write_parquet(temporary, names, cells)
+        elif path.suffix.lower() == ".xlsx":
+            _write_workbook(temporary, names, cells)
         elif path.suffix.lower() == ".jsonl":
             with temporary.open("w", encoding="utf-8", newline="") as file:
                 for row in cells:
@@ -205,6 +217,8 @@ def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
     """Return header and rows of a table, and the separator of a CSV."""
     if path.suffix.lower() == ".parquet":
         return _parquet_lines(path), ""
+    if path.suffix.lower() == ".xlsx":
+        return _workbook_lines(path), ""
     form, lines = _read_csv(path.read_bytes())
     return lines, form.separator
 
@@ -302,7 +316,11 @@ def _table_cell(value: object) -> Cell:
 
 
 _MIN_CELLS, _CELLS_PER_BYTE = 200_000, 20
-"""Largest number of cells of a Parquet file: a constant plus a number per byte."""
+"""Largest number of cells of a workbook or Parquet file: a constant plus a number per byte."""
+
+
+_LONGEST_TEXT = 32_767
+"""Characters of a cell in Excel at most."""
 
 
 def _finite(value: Cell) -> Cell:
@@ -315,15 +333,61 @@ def _cell_text(cell: object) -> str:
     return "" if cell is None else str(cell).strip()
 
 
+def _check_size(path: Path, n_cells: int) -> None:
+    """Refuse a file that claims more cells than its size can hold."""
+    if n_cells > _MIN_CELLS + _CELLS_PER_BYTE * path.stat().st_size:
+        raise ExcessError(f"claims {n_cells} cells, more than a file of its size holds")
+
+
+def _workbook_lines(path: Path) -> Iterator[Sequence[object]]:
+    """Yield the rows of the only sheet of a workbook from its header on."""
+    from openpyxl import load_workbook
+
+    check_inflation(path)
+    with path.open("rb") as file:
+        book = load_workbook(file, read_only=True, data_only=True)
+        if len(book.sheetnames) > 1:
+            raise ExcessError(f"has several sheets ({', '.join(book.sheetnames)}), must have one")
+        n_cells, in_table = 0, False
+        for line in book.worksheets[0].iter_rows(values_only=True):
+            n_cells += 1 + len(line)
+            _check_size(path, n_cells)
+            first = next(filter(None, map(_cell_text, line)), "")
+            in_table = in_table or (bool(first) and not first.startswith("#"))
+            if in_table:
+                yield line
+
+
+def _write_workbook(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write a workbook of one sheet without formulas."""
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+
+    book = Workbook(write_only=True)
+    sheet = book.create_sheet("table")
+
+    def plain(column: str, value: Cell) -> Any:
+        if not isinstance(value, str):
+            value = _csv_cell(column, value, ".") if value in (math.inf, -math.inf) else value
+        if not isinstance(value, str):
+            return value
+        cell: Any = WriteOnlyCell(sheet)
+        cell.value, cell.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
+        return cell
+
+    sheet.append([plain("", column) for column in columns])
+    for row in rows:
+        sheet.append([plain(*cell) for cell in zip(columns, row, strict=True)])
+    book.save(path)
+
+
 def _parquet_lines(path: Path) -> Iterator[Sequence[object]]:
     """Yield header and rows of a Parquet file."""
     from pyarrow import parquet
 
     with parquet.ParquetFile(path) as file:
         yield file.schema_arrow.names
-        cells = file.metadata.num_rows * file.metadata.num_columns
-        if cells > _MIN_CELLS + _CELLS_PER_BYTE * path.stat().st_size:
-            raise ExcessError(f"claims {cells} cells, more than a file of its size holds")
+        _check_size(path, file.metadata.num_rows * file.metadata.num_columns)
         table = file.read()
     yield from zip(*(column.to_pylist() for column in table.columns), strict=True)
 

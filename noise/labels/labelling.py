@@ -51,7 +51,7 @@ def label(
         Place of the recording, which decides the expected background sounds; by default ``rig`` if
         an operating condition is logged, else ``any``.
     out : path, optional
-        File for the table: .csv, .jsonl or .parquet. As with
+        File for the table: .csv, .xlsx, .jsonl or .parquet. As with
         ``bushing-noise label --out``, a journal beside it stores each finished recording: the next
         call of either with the same table resumes. Corrections in the table are preserved.
     fresh : bool

@@ -91,7 +91,7 @@ class LabelTable(list[dict[str, object]]):
         Parameters
         ----------
         path : str or Path
-            Ends in .csv, .jsonl or .parquet.
+            Ends in .csv, .xlsx, .jsonl or .parquet.
 
         Raises
         ------
@@ -142,7 +142,7 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
     Parameters
     ----------
     path : Path
-        CSV, JSON Lines or Parquet file.
+        CSV, Excel, JSON Lines or Parquet file.
     refusals : list of str, optional
         List to which a line is appended for each invalid row, which is skipped; by default an
         invalid row is an error.

@@ -22,7 +22,7 @@ def read_json_lines(path):
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet", ".xlsx"])
 def test_no_text_controls_what_it_is_shown_on(tmp_path, ending):
     rows = [{"file": "\x1b[2J\a.wav"}, {"file": "\udcff\n.wav"}]
     write_table(tmp_path / f"t{ending}", ["file"], rows)
@@ -45,7 +45,7 @@ def test_finite_numbers_come_back_as_they_were_and_others_are_none(tmp_path_fact
 
 @pytest.mark.parametrize("name", ["t.ods", "t", "t.json", "."])
 def test_other_endings_are_refused(tmp_path, name):
-    with pytest.raises(ParameterError, match=r"\.csv, \.jsonl or \.parquet"):
+    with pytest.raises(ParameterError, match=r"\.csv, \.xlsx, \.jsonl or \.parquet"):
         write_table(tmp_path / name, ["a"], [])
     with pytest.raises(ParameterError):
         check_table_path(tmp_path / name)
@@ -69,7 +69,7 @@ NAMES = ("=1+1.wav", "+r.wav", "-2.wav", "@r.wav", "'=r.wav", "ä; 1,5.wav", "'s
 LEVELS = [{"file": name, "level_db": 59.9 + n, "count": n} for n, name in enumerate(NAMES)]
 
 
-@pytest.mark.parametrize("ending", [".csv", ".parquet", ".jsonl"])
+@pytest.mark.parametrize("ending", [".csv", ".xlsx", ".parquet", ".jsonl"])
 def test_every_format_is_read_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"t{ending}"
     write_table(path, ("file", "level_db", "support_stiffness_Nm_rad"), LEVELS[:-1])
@@ -155,3 +155,16 @@ def test_a_missing_library_is_told_with_the_command_that_installs_it(tmp_path, m
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[parquet\]"'):
         write_table(tmp_path / "t.parquet", ["a"], [])
+
+
+def test_a_workbook_with_further_sheets_is_not_written_over(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    path = tmp_path / "t.xlsx"
+    write_table(path, ["a"], [{"a": 1.0}])
+    book = openpyxl.load_workbook(path)
+    book.create_sheet("pivot")
+    book.save(path)
+    saved = path.read_bytes()
+    with pytest.raises(ParameterError, match="several sheets"):
+        write_table(path, ["a"], [{"a": 2.0}])
+    assert path.read_bytes() == saved

@@ -209,7 +209,7 @@ def test_a_saved_model_infers_the_same(tmp_path, heard):
         )
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet", ".xlsx"])
 def test_bounds_up_to_the_bolted_clamp_are_read_back(tmp_path, ending):
     support = "support_stiffness_Nm_rad"
     row = dict.fromkeys(COLUMNS) | {

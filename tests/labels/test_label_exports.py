@@ -40,7 +40,7 @@ TABLE = [
 NEWER = ("level_dba", "l_afmax_dba", "snr_dba", "label_source")
 
 
-@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet", ".xlsx"])
 def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
     write_table(path, COLUMNS, TABLE)

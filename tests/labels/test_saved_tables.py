@@ -195,6 +195,7 @@ def test_rows_by_a_person_stay_however_a_table_was_saved(way, labelled, recordin
     ("ending", "shape"),
     [
         (".jsonl", "as written"),
+        (".xlsx", "as written"),
         (".parquet", "as written"),
         (".parquet", "texts"),
     ],
