@@ -1,6 +1,5 @@
 from .kernels.harmonics import (
     Harmonics as Harmonics,
-    PitchTrack as PitchTrack,
     analyse_harmonics as analyse_harmonics,
     pitch_track as pitch_track,
 )

@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,21 +73,6 @@ _BAND_EDGES = (150, 500, 1000, 2000, 5000, 7000)
 
 _LEAST_IN_BAND = 1e-5
 """Relative power of the described band below which it contains leakage only."""
-
-
-class TopBand(NamedTuple):
-    """Level and kurtosis of a band above the common limit; NaN if the rate does not reach it.
-
-    Parameters
-    ----------
-    level : float
-        Level re the described band [dB].
-    kurtosis : float
-        [-]; NaN also for an empty band.
-    """
-
-    level: float
-    kurtosis: float
 
 
 @short_repr
@@ -310,17 +294,17 @@ class Prepared:
         return self._share_db(self.spectrum, THESIS_BANDS[1][0], self.limit)
 
     @cached_property
-    def top_bands(self) -> tuple[TopBand, ...]:
-        """Level and kurtosis of `TOP_BANDS`."""
+    def top_bands(self) -> tuple[tuple[float, float], ...]:
+        """Level re the described band [dB] and kurtosis [-] of `TOP_BANDS`, NaN beyond the rate."""
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
-    def _top_band(self, low: float, high: float) -> TopBand:
+    def _top_band(self, low: float, high: float) -> tuple[float, float]:
         if high > usable_limit(self.rate):
-            return TopBand(math.nan, math.nan)
+            return math.nan, math.nan
         top, _ = band_analytic(self.transform, low, high)
         power = squared(top)
         level = relative_db(0.5 * float(power.mean()), self.in_band_power)
-        return TopBand(level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan)
+        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
 
 
 def prepare(

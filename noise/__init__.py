@@ -13,8 +13,8 @@ Simulate: `load_rig`, `load_material_rig`, `material_names`, `simulate`, `Run`, 
 Listen: `find_recordings`, `read_recording`, `read_calibrator`, `write_recording`,
 `Recording`, `Channel`, `plot_run`, `write_picture`.
 
-Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `Segments`, `LABELS`,
-`Classifier`, `load_classifier`, `train`, `Inference`, `Inferred`, `Interval`, `load_inference`,
+Label: `label`, `LabelTable`, `label_recording`, `file_label`, `Segment`, `LABELS`,
+`Classifier`, `load_classifier`, `train`, `Inference`, `Interval`, `load_inference`,
 `train_inference`.
 
 Screen: `screen`, `Screening`, `load_design`, `Design`, `Use`, `Swinging`, `sweep`, `Sweep`,
@@ -52,9 +52,9 @@ _EXPORTS = {
     "noise.diagnosis.diagnose": ("diagnose",),
     "noise.identification.outcome": ("Identification",),
     "noise.identification.identify": ("identify",),
-    "noise.inference": ("Inference", "Inferred", "Interval", "load_inference"),
+    "noise.inference": ("Inference", "Interval", "load_inference"),
     "noise.training.inference": ("train_inference",),
-    "noise.labels.segments": ("Segment", "Segments", "file_label", "label_recording"),
+    "noise.labels.segments": ("Segment", "file_label", "label_recording"),
     "noise.labels.table": ("LabelTable",),
     "noise.labels.labelling": ("label",),
     "noise.pictures.figure": ("write_picture",),

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,9 +27,6 @@ from threadpoolctl import threadpool_limits
 
 from models.errors import ParameterError
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 ORDERS = tuple(range(4, 25, 2))
 """Orders of the denominators in each band."""
@@ -182,25 +179,6 @@ class Modes:
             residues=self.residues[:, some],
             orders=self.orders[some],
         )
-
-    def to_pandas(self) -> DataFrame:
-        """Return a pandas data frame with one row per mode.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Columns ``frequency_hz``, ``damping_ratio`` and ``orders``.
-
-        Raises
-        ------
-        ParameterError
-            pandas is not installed.
-        """
-        from models.show import data_frame
-
-        columns = ("frequency_hz", "damping_ratio", "orders")
-        values = zip(self.frequency, self.damping_ratio, self.orders, strict=True)
-        return data_frame(columns, [dict(zip(columns, of, strict=True)) for of in values])
 
 
 def modes_of_poles(poles: list[Pole], measured: Responses) -> Modes:

@@ -3,6 +3,6 @@
 Values marked "assumed" were chosen by judgement, without a recorded measurement.
 """
 
-from noise.inference.model import Inference, Inferred, Interval, infer_stretch, load_inference
+from noise.inference.model import Inference, Interval, infer_stretch, load_inference
 
-__all__ = ["Inference", "Inferred", "Interval", "infer_stretch", "load_inference"]
+__all__ = ["Inference", "Interval", "infer_stretch", "load_inference"]

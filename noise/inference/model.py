@@ -69,17 +69,6 @@ class Interval:
     high: float
 
 
-class Inferred(dict[str, Interval]):
-    """Inferred conditions of a segment by name.
-
-    Examples
-    --------
-    >>> found = Inferred(interference=Interval(0.279e-3, 0.25e-3, 0.31e-3))
-    >>> found["interference"].high
-    0.00031
-    """
-
-
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Inference:
@@ -124,7 +113,7 @@ class Inference:
         *,
         kinds: Sequence[str],
         calibrated: bool,
-    ) -> Inferred:
+    ) -> dict[str, Interval]:
         """Return inferred conditions of a segment that are not logged.
 
         Parameters
@@ -140,8 +129,8 @@ class Inference:
 
         Returns
         -------
-        Inferred
-            Dict of str to Interval, by `QUANTITIES`, without logged conditions and those without
+        dict of str to Interval
+            By `QUANTITIES`, without logged conditions and those without
             a narrow interval.
 
         Examples
@@ -152,7 +141,7 @@ class Inference:
         """
         known = scaled(logged)
         table = np.array([[features.get(name, np.nan) for name in self.names]])
-        inferred = Inferred()
+        inferred: dict[str, Interval] = {}
         for index, name in enumerate(QUANTITIES):
             if not np.isnan(known[index]):
                 continue
@@ -256,7 +245,7 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Inf
 
 def infer_stretch(
     blocks: RecordingBlocks, first: int, last: int, logged: Condition, inference: Inference
-) -> Inferred:
+) -> dict[str, Interval]:
     """Return inferred conditions of a stretch with a creak, squawk or squeal.
 
     Parameters
@@ -269,7 +258,7 @@ def infer_stretch(
 
     Returns
     -------
-    Inferred
+    dict of str to Interval
         As from `Inference.infer`; empty if the intervals do not hold for the recording: it is too
         short, its sampling rate too low, or its material another.
 
@@ -288,9 +277,9 @@ def infer_stretch(
     """
     kinds = [kind for kind in KINDS if blocks.first(kind) is not None]
     if not kinds or blocks.rate < min(RATES) or last - first < SHORTEST * blocks.rate:
-        return Inferred()
+        return {}
     if (logged.material or MATERIAL).lower() != MATERIAL:
-        return Inferred()
+        return {}
     spare = max(0, last - first - round(LONGEST * blocks.rate))
     middle = blocks.cut(first + spare // 2, last - (spare - spare // 2))
     return inference.infer(

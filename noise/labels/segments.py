@@ -34,10 +34,7 @@ from noise.labels.windows import (
 )
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-
-_MOST_SHOWN = 4
-"""Maximum number of segments in the printed form."""
+    pass
 
 
 @short_repr
@@ -91,47 +88,13 @@ class Segment:
     snr: float | None = None
 
 
-class Segments(list[Segment]):
-    """List of the labelled segments of a recording, in order of time, track by track.
-
-    Examples
-    --------
-    >>> segments = Segments([Segment("all", 0.0, 1.0, "creak", {"creak": 0.9}, 152.0, 78.0, None)])
-    >>> segments
-    Segments(1: creak 0 to 1 s)
-    """
-
-    def to_pandas(self) -> DataFrame:
-        """Return a pandas data frame with one row per segment, in the columns of a label table.
-
-        Returns
-        -------
-        pandas.DataFrame
-
-        Raises
-        ------
-        ParameterError
-            pandas is not installed.
-        """
-        from models.show import data_frame
-        from noise.labels.rows import segment_cells
-        from noise.labels.table import SEGMENT_COLUMNS
-
-        return data_frame(SEGMENT_COLUMNS, map(segment_cells, self))
-
-    def __repr__(self) -> str:
-        shown = [f"{one.label} {one.start:.4g} to {one.end:.4g} s" for one in self[:_MOST_SHOWN]]
-        more = ["..."] * (len(self) > _MOST_SHOWN)
-        return f"Segments({len(self)}: {', '.join(shown + more)})"
-
-
 def label_recording(
     recording: Recording | RecordingBlocks,
     classifier: Classifier,
     *,
     per_track: bool = False,
     surroundings: str | None = None,
-) -> Segments:
+) -> list[Segment]:
     """Return the labelled segments of a recording.
 
     Parameters
@@ -147,8 +110,8 @@ def label_recording(
 
     Returns
     -------
-    Segments
-        List of `Segment`, in order of time, without gaps, track by track.
+    list of Segment
+        In order of time, without gaps, track by track.
 
     Examples
     --------
@@ -160,11 +123,11 @@ def label_recording(
     ['none']
     """
     described = tracks(RecordingBlocks.of(recording), per_track=per_track)
-    return Segments(
+    return [
         segment
         for name, track in described
         for segment in with_levels(track, _label(track, classifier, name, surroundings))
-    )
+    ]
 
 
 def file_label(segments: list[Segment]) -> Segment:

@@ -14,7 +14,6 @@ from models.recording import Channel, Recording
 from models.transfer_functions.files import write_transfer_function_csv
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.identification.outcome import Identification, Number
-from noise.labels.segments import Segment
 from noise.labels.table import COLUMNS
 from tests.helpers.made_diagnoses import one_effect
 
@@ -31,11 +30,6 @@ def recording(**others):
     time = np.arange(4800) / 48e3
     samples = np.stack([np.sin(300 * time), 2 * np.cos(500 * time)])
     return Recording(samples, 48e3, CHANNELS, **others)
-
-
-def segments():
-    one = Segment("all", 0.0, 1.25, "creak", {"creak": 0.9, "none": 0.1}, 152.0, 78.0, -20.0)
-    return noise.Segments([one] * 30)
 
 
 def label_table():
@@ -65,11 +59,11 @@ def sweep():
 
 
 DRAWN = (recording, run, one_effect, response, sweep)
-ROWS = {segments: 30, label_table: 30, response: 401, modes: 2, sweep: 4,
+ROWS = {label_table: 30, response: 401, sweep: 4,
         identification: 1}  # fmt: skip
 
 
-@pytest.mark.parametrize("made", [*DRAWN, *ROWS, noise.load_classifier])
+@pytest.mark.parametrize("made", [*DRAWN, *ROWS, modes, noise.load_classifier])
 def test_a_result_prints_short(made):
     printed = repr(made())
     assert len(printed) < LONGEST
@@ -97,7 +91,6 @@ def test_frames_have_the_columns_of_the_files():
     frame = label_table().to_pandas()
     assert tuple(frame.columns) == COLUMNS
     assert frame["level_db"].mean() == 70.0
-    assert set(segments().to_pandas().columns) < set(COLUMNS)
     file = io.StringIO()
     write_transfer_function_csv(file, response())
     assert file.getvalue().splitlines()[0].split(",") == [*response().to_pandas().columns]
