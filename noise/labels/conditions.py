@@ -103,8 +103,9 @@ def conditions_map(rows: Iterable[Mapping[str, object]]) -> list[Place]:
     for row in labelled:
         material = row.get("material")
         name = None if material is None else str(material)
-        where = [group.get(_logged(row, axis)) for axis, group in groups.items()]
-        place = places.setdefault((name, *where), Place(name, *where))
+        speed, fit, support = (groups[axis].get(_logged(row, axis)) for axis in _AXES)
+        place = Place(name, speed, fit, support)
+        place = places.setdefault((name, speed, fit, support), place)
         label = str(row["label"])
         place.segments[label] += 1
         start, end = _number(row.get("start_s")), _number(row.get("end_s"))

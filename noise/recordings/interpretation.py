@@ -201,9 +201,10 @@ def _calibrated(
             else:
                 value = option
         values.append(value)
-    if None in values:
+    known = [value for value in values if value is not None]
+    if len(known) < len(values):
         return channels, False
-    pairs = zip(channels, values, strict=True)
+    pairs = zip(channels, known, strict=True)
     return tuple(replace(channel, full_scale=value) for channel, value in pairs), True
 
 

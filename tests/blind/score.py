@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["DIAGNOSE", "LEAST_GAP", "figures", "read_diagnosis", "score_folder", "table"]
 
 LEAST_GAP = 1.5
-DIAGNOSE = "tests.blind.score:diagnosis_json"
+DIAGNOSE = "tests.helpers.diagnosed:diagnosis_json"
 """What ``bushing-noise diagnose`` calls."""
 
 FAILED: dict = {"verdict": [], "probabilities": {}, "failed": True}
@@ -46,14 +46,6 @@ class Figure(NamedTuple):
     value: float
     low: float
     high: float
-
-
-def diagnosis_json(data: Path, rig: Path, *, quick: bool = False) -> dict:
-    """Return the content of ``diagnosis.json`` for a folder."""
-    from noise.diagnosis.diagnose import diagnose
-    from noise.diagnosis.outcome import as_json
-
-    return as_json(diagnose(data, rig, quick=quick))
 
 
 def read_diagnosis(diagnosis: Mapping, case: str = "diagnosis") -> dict:

@@ -59,7 +59,7 @@ SOURCE = [
 ]
 BATCH = [
     *SOURCE,
-    ("runs --out t.txt", "t.txt: tables end in .csv, .jsonl or .parquet"),
+    ("runs --out t.txt", "t.txt: tables end in .csv, .xlsx, .jsonl or .parquet"),
     ("runs --out runs/a.wav/t.csv", "is a file, not a folder"),
     ("runs --workers 0", "--workers is '0', expected a whole number from 1 to 1024"),
     (f"runs --workers {'9' * 5000}", "expected a whole number from 1 to 1024"),
@@ -101,7 +101,7 @@ SIMULATE = [
     ("--speed 1 --out file.txt/run07", "--out"),
     ("--speed 1 --out ''", "is '', expected a path"),
     ("--speed 1 --plot run.gif", "--plot run.gif: a picture ends in"),
-    ("--speed 1 --sound-power power.ods", "tables end in .csv, .jsonl or .parquet"),
+    ("--speed 1 --sound-power power.ods", "tables end in .csv, .xlsx, .jsonl or .parquet"),
     ("--speed 1 --sound-power p.csv --seconds 0.1", "--seconds 0.1 is too short"),
     ("--rig suspension --oscillate 6,2 --plot x.png", "--plot is for the rig only"),
     ("--sped 5", "--sped"),
@@ -166,7 +166,7 @@ CALLS = {
         ("PDMS --interference 11", "--interference is 11 mm; it must be at most 10"),
         ("PDMS --interference 0.1..20", "--interference"),
         ("PDMS --temperature a", "--temperature"),
-        ("PDMS --temperature -300", "at least -273.15"),
+        ("PDMS --temperature -300", "above -273.15"),
         ("PDMS --support-stiffness -1", "--support-stiffness"),
         ("PDMS --support-stiffness soft", "--support-stiffness is 'soft'"),
         ("PDMS --oscillate 15", "--oscillate is '15', expected degrees and Hz"),
