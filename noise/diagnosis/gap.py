@@ -30,7 +30,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -184,8 +184,9 @@ _UNUSUAL = 4.0
 """Times the median squared distance of repeats, which counts as that much in their mean;
 assumed."""
 
-_MOST_EXCHANGES = 200
-"""Within one condition; beyond, as many are drawn."""
+_MOST_EXCHANGES, _N_DRAWN = 200, 4000
+"""Exchanges within one condition, of which as many are drawn where there are more, and those drawn
+of all conditions together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,29 +274,25 @@ class Gap:
         Distance of each recording, in floors [-].
     of_channels : ndarray, shape (n_recordings, n_kinds)
         Distance of each recording in each kind of channel, in floors of its own; NaN where there
-        is none, and none at all where it was not asked for [-].
+        is none [-].
     """
 
     distance: float
     p_value: float
     of_recordings: Array
-    of_channels: Array = field(default_factory=lambda: np.empty((0, len(KINDS))))
+    of_channels: Array
 
 
-def reference(
-    signatures: Sequence[Array], *, least: float = LEAST_SCALE, seed: int = 0
-) -> Reference:
+def reference(signatures: Sequence[Array]) -> Reference:
     """Make a reference of the signatures of at least three repeats.
+
+    In a distance whole spectra scatter by 3 % at least, whatever these repeats say; p-values come
+    of the repeats as they are.
 
     Parameters
     ----------
     signatures : sequence of ndarray, shape (n_values,)
         One per repeat, as of `noise.diagnosis.gap.signature`.
-    least : float
-        Relative scatter of whole spectra that is known to be there whatever these repeats say; 0
-        where they scatter as they should. It is for p-values: in a distance, 3 % is the least.
-    seed : int
-        Of what is added to repeats that scatter by less.
 
     Examples
     --------
@@ -305,8 +302,8 @@ def reference(
     >>> repeats.null.shape, 0.5 < repeats.squared(rng.normal(size=len(NAMES))) < 2.0
     ((8,), True)
     """
-    exchanged = with_least_scatter(np.array(signatures), least, seed)
-    s = with_least_scatter(np.array(signatures), LEAST_SCALE, seed)
+    exchanged = np.array(signatures)
+    s = with_least_scatter(exchanged)
     null = np.empty(len(s))
     for i in range(len(s)):
         mean, scale = _moments(np.delete(s, i, axis=0))
@@ -315,13 +312,7 @@ def reference(
     return Reference(mean, scale, null, exchanged)
 
 
-def gap_of(
-    signatures: Sequence[Array],
-    references: Sequence[Reference],
-    *,
-    seed: int = 0,
-    n_draws: int = 4000,
-) -> Gap:
+def gap_of(signatures: Sequence[Array], references: Sequence[Reference], *, seed: int = 0) -> Gap:
     """Gap between recordings and their references.
 
     Parameters
@@ -330,7 +321,7 @@ def gap_of(
         One per recording, as of `noise.diagnosis.gap.signature`.
     references : sequence of Reference
         One a recording; recordings of one condition share one.
-    seed, n_draws : int
+    seed : int
         Of the exchanges that tell how likely the gap is between repeats.
 
     Returns
@@ -347,47 +338,38 @@ def gap_of(
     """
     squared = np.array([r.squared(s) for s, r in zip(signatures, references, strict=True)])
     rng = np.random.default_rng(seed)
-    statistic, draws, farthest = 0.0, np.zeros(n_draws), True
-    for shared in {id(r): r for r in references}.values():
-        own = [s for s, r in zip(signatures, references, strict=True) if r is shared]
-        exchanged = _exchanged(np.array(own), shared.repeats, rng)
-        statistic += exchanged[0]
-        draws += rng.choice(exchanged, n_draws)
-        farthest = farthest and exchanged[0] >= exchanged.max()
-    # ties, the case itself among them, count as being as far out
-    as_far = int(np.sum(draws >= statistic - 1e-9 * abs(statistic)))
-    p_value = (1.0 + as_far) / (n_draws + 1.0)
-    if farthest:  # no exchange lies farther out, so that their number alone would set the value
-        p_value = min(p_value, max(_tail(squared, references), 1.0 / (n_draws + 1.0)))
-    return Gap(float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared))
-
-
-def _tail(squared: Array, references: Sequence[Reference]) -> float:
-    """Probability of so large distances by the scatter of those that the repeats have [-].
-
-    Distances of repeats are about log-normal; recordings of a condition share its error.
-    """
+    statistic, draws, farthest = 0.0, np.zeros(_N_DRAWN), True
     away, variance, freedom = 0.0, 0.0, math.inf
     for shared in {id(r): r for r in references}.values():
-        own = np.array([0.5 * math.log(x) for x, r in zip(squared, references, strict=True)
-                        if r is shared])  # fmt: skip
+        own = [i for i, r in enumerate(references) if r is shared]
+        exchanged = _exchanged(np.array([signatures[i] for i in own]), shared.repeats, rng)
+        statistic += exchanged[0]
+        draws += rng.choice(exchanged, _N_DRAWN)
+        farthest = farthest and exchanged[0] >= exchanged.max()
+        # Distances of repeats are about log-normal; recordings of a condition share its error.
         null = 0.5 * np.log(shared.null / shared.unit)
-        away += float(np.sum(own - null.mean()))
-        variance += own.size**2 * float(null.var(ddof=1)) * (1.0 + 1.0 / null.size)
+        away += float(np.sum(0.5 * np.log(squared[own]) - null.mean()))
+        variance += len(own) ** 2 * float(null.var(ddof=1)) * (1.0 + 1.0 / null.size)
         freedom = min(freedom, null.size - 1.0)
-    return float(students_t.sf(away / math.sqrt(variance + 1e-12), freedom))
+    # ties, the case itself among them, count as being as far out
+    as_far = int(np.sum(draws >= statistic - 1e-9 * abs(statistic)))
+    p_value = (1.0 + as_far) / (_N_DRAWN + 1.0)
+    if farthest:  # no exchange lies farther out, so that their number alone would set the value
+        tail = float(students_t.sf(away / math.sqrt(variance + 1e-12), freedom))
+        p_value = min(p_value, max(tail, 1.0 / (_N_DRAWN + 1.0)))
+    return Gap(
+        float(np.sqrt(np.mean(squared))), p_value, np.sqrt(squared),
+        channel_distances(signatures, references),
+    )  # fmt: skip
 
 
-def with_least_scatter(signatures: Array, least: float = LEAST_SCALE, seed: int = 0) -> Array:
+def with_least_scatter(signatures: Array) -> Array:
     """Shift whole spectra of repeats so that none scatters by less than repeats always do.
 
     Parameters
     ----------
     signatures : ndarray, shape (n_repeats, n_values)
         As of `noise.diagnosis.gap.signature`.
-    least : float
-        Relative standard deviation.
-    seed : int
 
     Returns
     -------
@@ -400,12 +382,12 @@ def with_least_scatter(signatures: Array, least: float = LEAST_SCALE, seed: int 
     >>> 0.02 < float(with_least_scatter(same)[:, 0].std()) < 0.04
     True
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     s = signatures.copy()
     for i in range(len(KINDS)):
         inside = (i == _GROUP_OF) & np.isfinite(s).all(axis=0)
         if inside.any():
-            lacking = least**2 - float(s[:, inside].var(axis=0, ddof=1).mean())
+            lacking = LEAST_SCALE**2 - float(s[:, inside].var(axis=0, ddof=1).mean())
             if lacking > 0.0:
                 s[:, inside] += math.sqrt(lacking) * rng.standard_normal((len(s), 1))
     return s
@@ -586,9 +568,6 @@ def _costs(deviation: Array) -> Array:
     return np.array(channels)
 
 
-N_REPEATS = 12
-"""Simulated repeats a condition; what a diagnosis may cost settles it; assumed."""
-
 _WIDENS_FROM = 0.99
 """Quantile of simulated repeats' differences beyond which recorded ones widen the floor;
 assumed."""
@@ -597,45 +576,10 @@ _N_SETS, _N_DRAWS = 60, 400
 """Of repeats of one condition, and of such sets over all conditions."""
 
 
-def repeat_gap(
-    recordings: Sequence[Recording],
-    repeats: Mapping[tuple[float, ...], Sequence[Array]],
-    *,
-    least: float = LEAST_SCALE,
-    seed: int = 0,
-) -> Gap:
-    """Gap between recordings and repeats of their conditions, simulated or recorded.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-    repeats : mapping of (float, float, float, float, float) to sequence of ndarray
-        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference
-        [m], support stiffness [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives
-        them.
-    least : float
-        As in `noise.diagnosis.gap.reference`.
-    seed : int
-
-    Returns
-    -------
-    Gap
-    """
-    signatures = [signature(recording) for recording in recordings]
-    references = references_of(recordings, signatures, repeats, least=least, seed=seed)
-    return replace(
-        gap_of(signatures, references, seed=seed),
-        of_channels=channel_distances(signatures, references),
-    )
-
-
 def references_of(
     recordings: Sequence[Recording],
     signatures: Sequence[Array],
     repeats: Mapping[tuple[float, ...], Sequence[Array]],
-    *,
-    least: float = LEAST_SCALE,
-    seed: int = 0,
 ) -> list[Reference]:
     """Return what each recording is compared with: repeats, as far apart as the recordings' own.
 
@@ -644,8 +588,10 @@ def references_of(
     recordings : sequence of Recording
     signatures : sequence of ndarray, shape (n_values,)
         Of the recordings, as of `noise.diagnosis.gap.signature`.
-    repeats, least, seed
-        As of `repeat_gap`.
+    repeats : mapping of (float, float, float, float, float) to sequence of ndarray
+        Signatures, shape (n_values,), of at least three repeats, by speed [rad/s], interference
+        [m], support stiffness [Nm/rad], sampling rate [Hz] and length [s], as `condition_key` gives
+        them.
 
     Returns
     -------
@@ -666,7 +612,7 @@ def references_of(
     for key in own:
         s = np.array(repeats[key])
         mean = s.mean(axis=0)
-        references[key] = reference(list(mean + each * (s - mean)), least=least, seed=seed)
+        references[key] = reference(list(mean + each * (s - mean)))
     return [references[condition_key(r)] for r in recordings]
 
 
@@ -677,7 +623,7 @@ def floor_widening(repeated: Sequence[tuple[Sequence[Array], Sequence[Array]]]) 
     ----------
     repeated : sequence of (sequence of ndarray, sequence of ndarray)
         For each condition, signatures, shape (n_values,), of its recordings, at least two, and of
-        its simulated repeats, at least four; as of `repeat_gap`.
+        its simulated repeats, at least four; as of `references_of`.
 
     Returns
     -------

@@ -194,7 +194,10 @@ def test_causes_are_at_least_as_likely_as_any_set_that_they_are_in(p):
 def test_something_is_to_be_explained_where_nothing_is_unlikely_to_be_the_matter():
     assert not needs_explaining(0.05, 0.05)
     assert needs_explaining(0.049, 0.05)
-    large, common = Gap(6.0, 0.001, np.ones(1)), Gap(6.0, 0.4, np.ones(1))
+    large, common = (
+        Gap(6.0, 0.001, np.ones(1), np.ones((1, 3))),
+        Gap(6.0, 0.4, np.ones(1), np.ones((1, 3))),
+    )
     assert needs_explaining(0.9, 0.05, large)
     assert not needs_explaining(0.9, 0.05, common)
 

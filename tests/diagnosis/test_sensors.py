@@ -157,7 +157,10 @@ def test_good_sensors_are_those_the_causes_were_learned_with():
 
 
 def test_models_that_have_not_seen_such_sensors_raise_no_alarm_alone():
-    small, large = Gap(1.0, 0.4, np.ones(1)), Gap(6.0, 0.001, np.ones(1))
+    small, large = (
+        Gap(1.0, 0.4, np.ones(1), np.ones((1, 3))),
+        Gap(6.0, 0.001, np.ones(1), np.ones((1, 3))),
+    )
     assert needs_explaining(0.001, 0.05, small)
     assert not needs_explaining(0.001, 0.05, small, chance=0.4)
     assert needs_explaining(0.001, 0.05, small, chance=0.003)

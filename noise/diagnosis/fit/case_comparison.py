@@ -33,9 +33,9 @@ from noise.diagnosis.evidence.summary import (
 from noise.diagnosis.gap import (
     Gap,
     Reference,
+    gap_of,
     group_costs,
     references_of,
-    repeat_gap,
     signature,
 )
 from noise.diagnosis.simulated.model_runs import (
@@ -52,7 +52,8 @@ from sim.effects.effect import Effect
 T = TypeVar("T")
 
 N_REPEATS = 12
-"""Simulated repeats that tell what repeats differ by; as of `noise.diagnosis.gap`."""
+"""Simulated repeats that tell what repeats differ by; what a diagnosis may cost settles it;
+assumed."""
 
 _N_OF_MODEL = 6
 """The first of these, that tell where a model lies; assumed."""
@@ -133,20 +134,18 @@ class CaseComparison:
         self.references = self._references()
 
     def _references(self) -> list[Reference]:
-        return references_of(self.recordings, self.signatures, self._all_repeats())
-
-    def _all_repeats(self) -> dict[tuple[float, ...], list[NDArray[np.float64]]]:
-        return {
+        repeats = {
             condition_key(r): list(self._repeats(self.about, r, N_REPEATS))
             for r in reversed(self.recordings)
         }
+        return references_of(self.recordings, self.signatures, repeats)
 
     def gap(self, seed: int = 0) -> Gap:
         """Return the gap between the recordings and the rig of the file.
 
         Its distance is 1 on average, and its p-value uniform, where only chance sets them apart.
         """
-        return repeat_gap(self.recordings, self._all_repeats(), least=0.0, seed=seed)
+        return gap_of(self.signatures, self.references, seed=seed)
 
     def compared_about(self, model: Model) -> CaseComparison:
         """Return the same comparison in floors that the repeats of a model tell.

@@ -347,33 +347,7 @@ def perturb_run(
     stiffness = condition.support_stiffness
     if support and not math.isinf(stiffness):
         stiffness *= float(np.exp(scatter.structure * rng.normal()))
-    once = perturb_rig(rig, scatter, rng)
-    speed = condition.speed * float(np.exp(scatter.structure * rng.normal()))
-    return once, replace(condition, speed=speed, support_stiffness=stiffness)
-
-
-def perturb_rig(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
-    """Draw a rig as one of its runs finds it.
-
-    Parameters
-    ----------
-    rig : Rig
-    scatter : Scatter
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Rig
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> once = perturb_rig(rig, Scatter(), np.random.default_rng(1))
-    >>> 0.9 < once.elastomer_inertia / rig.elastomer_inertia < 1.1
-    True
-    """
-    stiffness, kinetic, drop, damping, inertia = np.exp(scatter.bushing * rng.standard_normal(5))
+    stiffening, kinetic, drop, damping, inertia = np.exp(scatter.bushing * rng.standard_normal(5))
     # the support's stiffness scatters too; what counts is the clamp's frequency, hence the root
     clamp = float(np.exp(math.sqrt(2.0) * scatter.structure * rng.standard_normal()))
 
@@ -382,15 +356,17 @@ def perturb_rig(rig: Rig, scatter: Scatter, rng: np.random.Generator) -> Rig:
         excess = (fit.critical_torque - fit.kinetic_torque) * float(drop)
         return replace(
             fit,
-            elastomer_stiffness=fit.elastomer_stiffness * float(stiffness),
+            elastomer_stiffness=fit.elastomer_stiffness * float(stiffening),
             kinetic_torque=sliding,
             critical_torque=sliding + excess,
             damping={support: c * float(damping) for support, c in fit.damping.items()},
         )
 
-    return replace(
+    once = replace(
         rig,
         fits=tuple(drawn(fit) for fit in rig.fits),
         elastomer_inertia=rig.elastomer_inertia * float(inertia),
         clamp_inertia=rig.clamp_inertia * clamp,
     )
+    speed = condition.speed * float(np.exp(scatter.structure * rng.normal()))
+    return once, replace(condition, speed=speed, support_stiffness=stiffness)
