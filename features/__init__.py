@@ -1,4 +1,4 @@
-"""Features of friction noise: spectra, bands, lines, harmonics, slips and sound quality.
+"""Features of friction noise: spectra, bands, lines, harmonics and slips.
 
 Each has a function and a frozen result; `feature_vector` and `recording_features` combine the
 features that distinguish noises.

@@ -174,7 +174,6 @@ class Prepared:
             self.spectrum,
             self.floor,
             self.lines,
-            lowest=LOWEST,
             highest=min(HIGHEST, self.limit),
         )
 

@@ -144,23 +144,17 @@ def refusing(
         raise error(f"{where}: is damaged or no {what} ({_reason(raised)})") from raised
 
 
-def check_plain_file(
-    path: Path, *, where: str | None = None, error: type[BushingNoiseError] = ParameterError
-) -> None:
+def check_plain_file(path: Path) -> None:
     """Raise unless a path is an existing plain file, without opening it.
 
     Parameters
     ----------
     path : Path
-    where : str, optional
-        Name of the file in messages; by default its path.
-    error : type
-        Type of the error.
 
     Raises
     ------
-    BushingNoiseError
-        Of the type `error`.
+    ParameterError
+        If it is none.
 
     Examples
     --------
@@ -168,7 +162,7 @@ def check_plain_file(
     Traceback (most recent call last):
     models.errors.ParameterError: /dev: is a folder, not a file
     """
-    with reading(path, "file", where=where, error=error):
+    with reading(path, "file"):
         pass
 
 

@@ -341,7 +341,7 @@ def analyse_harmonics(signal: ArrayLike, rate: float) -> Harmonics:
     spectrum = welch(x, rate, line_resolution(x.size / rate))
     floor = noise_floor(spectrum)
     lines = find_lines(spectrum, low=LOWEST, high=usable_limit(rate), floor=floor)
-    return harmonics_of(x, spectrum, floor, lines, lowest=LOWEST, highest=highest)
+    return harmonics_of(x, spectrum, floor, lines, highest=highest)
 
 
 def harmonics_of(
@@ -350,7 +350,6 @@ def harmonics_of(
     floor: NDArray[np.float64],
     lines: Lines,
     *,
-    lowest: float,
     highest: float,
 ) -> Harmonics:
     """Find the harmonics of a signal from its spectrum and lines, like `analyse_harmonics`.
@@ -365,8 +364,8 @@ def harmonics_of(
         `noise_floor` of the spectrum [unit^2/Hz].
     lines : Lines
         Lines of the spectrum; shares refer to their band.
-    lowest, highest : float
-        Limits of the fundamental [Hz].
+    highest : float
+        Upper limit of the fundamental [Hz].
 
     Returns
     -------
@@ -378,12 +377,12 @@ def harmonics_of(
     >>> x = np.sin(2 * np.pi * 500 * np.arange(8000) / 16e3)
     >>> spectrum = welch(x, 16e3, 4.0)
     >>> lines = find_lines(spectrum, low=5.0, high=7e3)
-    >>> tone = harmonics_of(x, spectrum, noise_floor(spectrum), lines, lowest=5.0, highest=7e3)
+    >>> tone = harmonics_of(x, spectrum, noise_floor(spectrum), lines, highest=7e3)
     >>> round(tone.fundamental, 1), tone.count
     (500.0, 1)
     """
     rate = spectrum.rate
-    period = strongest_period(x, rate, lowest=lowest, highest=highest)
+    period = strongest_period(x, rate, lowest=LOWEST, highest=highest)
     if lines.total <= 0.0 or period.strength < WEAKEST_PERIOD:
         return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines, math.nan)
     refined = lines
@@ -391,7 +390,7 @@ def harmonics_of(
     if spectrum.spacing > 1.01 * wanted and x.size / rate > 1.01 / spectrum.spacing:
         spectrum = welch(x, rate, wanted)
         floor = noise_floor(spectrum)
-        refined = find_lines(spectrum, low=lowest, high=usable_limit(rate), floor=floor)
+        refined = find_lines(spectrum, low=LOWEST, high=usable_limit(rate), floor=floor)
     fundamental = _refined(period, refined)
     number = np.arange(1, max(1, math.floor(usable_limit(rate) / fundamental)) + 1)
     frequency = np.asarray(number * fundamental, dtype=np.float64)

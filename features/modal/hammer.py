@@ -115,7 +115,7 @@ def _problem(hit: Hit) -> str:
         return "the response is zero throughout"
     force, top = _upright(hit.force)
     peak = float(force[top])
-    start, end = _lobe(force, top, DOUBLE_HIT)
+    start, end = _lobe(force, top)
     rest = np.concatenate([force[:start], force[end:]])
     parts = [part for part in np.array_split(force, _PARTS) if part.size]
     levels = np.array([np.median(part) for part in parts])
@@ -174,7 +174,7 @@ def remaining_response(hits: Sequence[Hit]) -> float:
     remaining = 0.0
     for hit in hits:
         force, top = _upright(hit.force)
-        start, _ = _lobe(force, top, DOUBLE_HIT)
+        start, _ = _lobe(force, top)
         length = max(1, round(_LAST * (hit.response.size - start)))
         power = hit.response**2
         before = float(power[:start].mean()) if start >= length // 2 and start else 0.0
@@ -289,9 +289,9 @@ def _upright(force: NDArray[np.float64]) -> tuple[NDArray[np.float64], int]:
     return force * math.copysign(1.0, force[top]), top
 
 
-def _lobe(signal: NDArray[np.float64], top: int, share: float) -> tuple[int, int]:
-    """Return first sample and end of the lobe above a share of the value at `top`."""
-    below = signal < share * signal[top]
+def _lobe(signal: NDArray[np.float64], top: int) -> tuple[int, int]:
+    """Return first sample and end of the lobe above `DOUBLE_HIT` of the value at `top`."""
+    below = signal < DOUBLE_HIT * signal[top]
     before = np.flatnonzero(below[:top])
     after = np.flatnonzero(below[top:])
     return (

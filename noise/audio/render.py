@@ -12,7 +12,6 @@ a sidecar's ``scale`` is for integers.)
 
 import json
 import math
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -369,7 +368,6 @@ def write_audio(
         content["channels"][0]["scale"] = full_scale
     description = with_full_scale(full_scale) if recording.calibrated else ""
     data = wav_bytes(samples / full_scale, rate, _BITS, description=description)
-    content["wav_crc32"] = f"{zlib.crc32(data):08x}"
     text = json.dumps(content | dict(about or {}), indent=1) + "\n"
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         wav.write_bytes(data)

@@ -36,7 +36,7 @@ _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right with
 _ORDER = 4  # of a band's ends, once
 
 
-def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> NDArray[np.float64]:
+def audible(recording: Recording, rate: int = 48000) -> NDArray[np.float64]:
     """Return the first pressure channel of a recording, prepared for listening.
 
     Parameters
@@ -44,8 +44,6 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
     recording : Recording
     rate : int
         Sampling rate of the result [Hz].
-    fade : float
-        Length of the fades in and out [s]; half of the sound at most.
 
     Returns
     -------
@@ -64,7 +62,7 @@ def audible(recording: Recording, rate: int = 48000, *, fade: float = FADE) -> N
     >>> audible(run).shape, audible(run, 44100).shape
     ((4800,), (4410,))
     """
-    return playable(recording[pressure_channel(recording).name], recording.rate, rate, fade=fade)
+    return playable(recording[pressure_channel(recording).name], recording.rate, rate)
 
 
 def playable(

@@ -43,7 +43,7 @@ REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
-SIMULATED, REFINED, BEYOND, UNCHANGED = HOW = ("simulated", "refined", "beyond", "unchanged")
+SIMULATED, REFINED, BEYOND, UNCHANGED = ("simulated", "refined", "beyond", "unchanged")
 """Origin of a point: simulated; as the simulated points around it; skipped, since a running
 vibration dies at a speed between it and unstable sliding; as at another temperature or fit."""
 

@@ -29,6 +29,9 @@ _NOISES = {
 _MOST_CRITICAL = 4
 """Largest number of lines on critical speeds, of the smallest margins."""
 
+_CHANGES, _LIMITS = 3, 2
+"""Changes that are named: of those that end a noise, and of those that reach a limit."""
+
 RANKING_RULE = (
     "Rank 1 has the lowest mean loudness of its use, in which 40 dB(A) counts 1 sone, 10 dB more "
     "twice as much and silence 0, so that a design that is noisy more often but fainter may come "
@@ -207,9 +210,7 @@ def _ends_words(one: CriticalPoint, grid: Grid) -> str:
 # --- advice --------------------------------------------------------------------------------------
 
 
-def advice_words(
-    noise: str, at: Condition, offers: Sequence[Offer], left: str = "", most: int = 3
-) -> str:
+def advice_words(noise: str, at: Condition, offers: Sequence[Offer], left: str = "") -> str:
     """Return sentences on the changes that silence the loudest point, and on what they leave.
 
     Parameters
@@ -223,8 +224,6 @@ def advice_words(
     left : str
         Noise of the unchanged design where the first change leaves it, such as ``creak,
         85 dB(A)``.
-    most : int
-        Changes that are named.
 
     Examples
     --------
@@ -237,7 +236,7 @@ def advice_words(
     ending = [one for one in offers if one.ends]
     if not ending:
         return f"no single change that was tried silences {where}" if offers else ""
-    best, shown = ending[0], ending[:most]
+    best, shown = ending[0], ending[:_CHANGES]
     others = " (in brackets: other noisy points silenced, of those tried)" * bool(best.elsewhere)
     changes = "; ".join(
         f"{one.words} ({one.quiet_elsewhere} of {one.elsewhere})" if others else one.words
@@ -261,7 +260,7 @@ def advice_words(
     )
 
 
-def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]:
+def limit_words(offers: Sequence[Offer], noise: str) -> list[str]:
     """Return sentences on changes that do not end the noise.
 
     Parameters
@@ -269,8 +268,6 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
     offers : sequence of Offer
     noise : str
         Its name.
-    most : int
-        Of those that reach a limit, that are named.
 
     Examples
     --------
@@ -287,15 +284,15 @@ def limit_words(offers: Sequence[Offer], noise: str, most: int = 2) -> list[str]
         if one.from_rest is not None and not one.ends
     ]
     limited = [one for one in offers if one.limit and one.from_rest is None and one.name not in end]
-    for one in limited[:most]:
+    for one in limited[:_LIMITS]:
         name = one.name.replace("_", " ")
         texts.append(
             f"{one.words} reaches the limit, and the {noise} goes on ({one.limit})"
             if one.percent
             else f"{name} alone does not end it ({one.limit})"
         )
-    if len(limited) > most:
-        texts.append(f"advice.csv has {len(limited) - most} more that reach a limit")
+    if len(limited) > _LIMITS:
+        texts.append(f"advice.csv has {len(limited) - _LIMITS} more that reach a limit")
     return texts
 
 

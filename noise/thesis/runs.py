@@ -40,7 +40,7 @@ from sim.shaft import ConstantSpeed
 THESIS, CALIBRATED = "fluorocarbon-thesis", "fluorocarbon"
 """Materials of the columns `exact` and `calibrated`."""
 
-LONG, SHORT = 2214.0, 3745.0
+LONG = 2214.0
 """Support stiffness with beams of 12.3 and 9.2 cm (Table 3.2) [Nm/rad]."""
 
 RATE = 30e3

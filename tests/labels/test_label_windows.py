@@ -197,9 +197,6 @@ def test_levels_of_what_has_no_square_are_levels_all_the_same():
     assert rms_level(RecordingBlocks.of(constant), 0, 0, 1000) is None
 
 
-TOP = FEATURE_NAMES.index("pressure_top_2")
-
-
 def tone_in_noise(n, rate=48_000):
     noise = np.random.default_rng(0).standard_normal(n)
     return 0.1 * noise + np.sin(2 * np.pi * 900.0 * np.arange(n) / rate)

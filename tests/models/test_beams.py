@@ -148,11 +148,6 @@ def pressure(beams=STEEL, microphone=MICROPHONE, damping=0.02, n=2**15):
     return beams_pressure(beams, 2214.0, 1 / 1200, damping, CLAMP, microphone, RATE, n, 40e3)
 
 
-def spectrum(signal, frequency):
-    turn = np.exp(-2j * np.pi / RATE * np.outer(np.arange(signal.size), frequency))
-    return signal @ turn
-
-
 def gain(width, height, frequency):
     far, _, poles = strip_section(width, height, RATE)
     turn = np.exp(2j * np.pi * np.asarray(frequency) / RATE)

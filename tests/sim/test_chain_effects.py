@@ -21,7 +21,6 @@ from tests.helpers.spectra import path_spectra
 
 RATE = 96e3
 RIG = load_material_rig("fluorocarbon")
-CHAIN = ("beam_modes", "plate_modes", "room_reflections")
 QUIET = Acquisition(noise={})
 
 

@@ -29,20 +29,11 @@ from sim.effects.effect import activated
 from sim.motion import simulate_motion
 from sim.shaft import ConstantSpeed
 from tests.helpers.contact_calls import call_hook
-from tests.helpers.contacts import contact_of, hook, solve_contact
+from tests.helpers.contacts import hook
 
 TRUE_STICK = load_material_rig("fluorocarbon-thesis")
 MEMORY = load_material_rig("fluorocarbon")
 RATE = 90e3
-
-
-def solve(*hooks, rig=TRUE_STICK, samples=3000):
-    """Torque and direction by the same solver, with or without effects."""
-    torques, options = contact_of(rig, 0.279e-3, 3745.0)
-    states, direction = solve_contact(
-        *torques, np.full(samples, 1.0), 1.0 / RATE, hooks=hooks, **options
-    )
-    return states[:, 1], direction
 
 
 def motion(*specs, rig=TRUE_STICK, speed=1.0, stiffness=3745.0, seconds=0.5):

@@ -111,13 +111,13 @@ def random_design(rng: Rng) -> Design:
 _material_rig = lru_cache(load_material_rig)
 
 
-def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> Fit:
+def scaled(fit: Fit, stiffness: float, torque: float) -> Fit:
     """Return a fit with scaled properties.
 
     Parameters
     ----------
     fit : Fit
-    stiffness, torque, damping : float
+    stiffness, torque : float
         Factors [-].
 
     Returns
@@ -134,7 +134,6 @@ def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> F
         elastomer_stiffness=fit.elastomer_stiffness * stiffness,
         critical_torque=fit.critical_torque * torque,
         kinetic_torque=fit.kinetic_torque * torque,
-        damping={support: c * damping for support, c in fit.damping.items()},
     )
 
 
