@@ -252,7 +252,7 @@ class LiveSounds:
         recent = b"".join(stream.recent.copy()) if stream is not None else b""
         pressure = np.frombuffer(recent, "<f4").astype(np.float64)
         if pressure.size < RATE // 4:
-            return {"level_db": None, "level_dba": None, "l_afmax_dba": None}
+            return {"level_dba": None, "l_afmax_dba": None}
         newest = self._names.newest
         name = None
         if newest is not None and newest[0][0] == number and newest[1] is not None:
@@ -261,7 +261,6 @@ class LiveSounds:
             self._names.ask((number, time.monotonic(), stream.speed, recent))
         measured = sound_levels(pressure, RATE)
         levels = {
-            "level_db": measured.level,
             "level_dba": measured.level_a,
             "l_afmax_dba": measured.level_af_max,
         }

@@ -21,8 +21,6 @@ from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
 from noise.pages.clips import RATE, Clip, Entry, Row, number_or
 
-Ticks = tuple[tuple[float, str], ...]
-
 
 def round_ticks(low: float, high: float, most: int) -> list[float]:
     """Return multiples of 1, 2 or 5 times a power of ten, about `most` of them from low to high.

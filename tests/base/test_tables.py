@@ -4,7 +4,6 @@ import json
 import math
 import sys
 
-import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
@@ -12,10 +11,6 @@ from models.errors import ParameterError
 from noise.base.tables import check_table_path, read_table, table_columns, write_table
 
 COLUMNS = ("file", "level_db", "count", "calibrated", "error")
-ROWS = [
-    {"file": "a, b.wav", "level_db": np.float64(81.25), "count": np.int64(3), "calibrated": True},
-    {"file": "bad.wav", "error": "is empty", "count": None, "calibrated": np.bool_(False)},
-]
 
 
 def read_json_lines(path):

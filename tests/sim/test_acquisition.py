@@ -9,7 +9,6 @@ from hypothesis import given, strategies as st
 from models.rig_file import load_material_rig
 from models.sensors import Sensor, Sensors
 from sim.acquisition import (
-    THESIS_CONVERTER,
     Acquisition,
     decimate_sensed,
     digitise,
@@ -18,7 +17,6 @@ from sim.acquisition import (
 from sim.run import simulate
 
 QUIET = Acquisition(noise={})
-THESIS = Acquisition(noise={}, sensors=THESIS_CONVERTER)
 
 
 def rng():
