@@ -54,13 +54,16 @@ def run(options: Namespace) -> int:
     """Screen the designs, print the ranking and write tables and pictures."""
     check_folder(options.out, file="map.csv")
     from noise.batch.journal import call_identity, temporary_journal
-    from noise.screening.design import load_designs
+    from noise.screening.design import load_design, load_designs
     from noise.screening.environments import environment
 
     use, change = _use(options), _change(options)
     environments = [name for name in options.environment.split(",") if name.strip()]
     for name in environments:
         environment(name)
+    for design in options.designs:
+        if not Path(design).exists():
+            load_design(design)  # refuses the call if it is no material either
     load_designs(options.designs, change)  # refuses bad designs before slow imports
     table = None if options.out is None else options.out / "map.csv"
     with temporary_journal(table, call_identity("screening")) as journal:

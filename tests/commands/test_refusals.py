@@ -157,6 +157,8 @@ CALLS = {
         ("lawless.toml", 'write base = "fluorocarbon"'),
         ("teflon", "neither a file nor a material"),
         ("nowhere.toml", "nowhere.toml"),
+        ("PDMS nowhere.toml", "there is no such file"),
+        ("PDMS teflon", "neither a file nor a material"),
         ("PDMS --workers none", "--workers is 'none', expected a whole number from 1 to 1024"),
         ("PDMS --workers 1025", "expected a whole number from 1 to 1024"),
         ("PDMS --speed fast", "--speed is 'fast'"),
