@@ -111,13 +111,13 @@ def random_design(rng: Rng) -> Design:
 _material_rig = lru_cache(load_material_rig)
 
 
-def scaled(fit: Fit, stiffness: float, torque: float) -> Fit:
+def scaled(fit: Fit, stiffness: float, torque: float, damping: float = 1.0) -> Fit:
     """Return a fit with scaled properties.
 
     Parameters
     ----------
     fit : Fit
-    stiffness, torque : float
+    stiffness, torque, damping : float
         Factors [-].
 
     Returns
@@ -134,6 +134,7 @@ def scaled(fit: Fit, stiffness: float, torque: float) -> Fit:
         elastomer_stiffness=fit.elastomer_stiffness * stiffness,
         critical_torque=fit.critical_torque * torque,
         kinetic_torque=fit.kinetic_torque * torque,
+        damping={support: c * damping for support, c in fit.damping.items()},
     )
 
 
