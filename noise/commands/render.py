@@ -344,14 +344,21 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
 
 
 def _noise_name(recording: Recording) -> str:
-    """Return the label of a sound and its frequency, such as ``squawk, 255 Hz, ``."""
+    """Return the label of a sound and its frequency, such as ``squawk, 255 Hz, ``.
+
+    Several labels are listed in the order in which they begin, without a frequency.
+    """
     from noise.classifier import load_classifier
     from noise.labels.segments import file_label, label_recording
 
     try:
-        segment = file_label(label_recording(recording, load_classifier()))
+        segments = label_recording(recording, load_classifier())
     except BushingNoiseError:  # too short or sampled too slowly to be labelled
         return ""
+    audible = dict.fromkeys(one.label for one in segments if one.label != "none")
+    if len(audible) > 1:
+        return f"{' and '.join(audible)}, "
+    segment = file_label(segments)
     pitch = "" if segment.frequency is None else f"{segment.frequency:.0f} Hz, "
     return f"{segment.label}, {pitch}"
 

@@ -531,7 +531,8 @@ def _likely(diagnosis: Diagnosis, name: str, clause: str = "") -> str:
 def location_sentence(diagnosis: Diagnosis) -> str:
     """Return where the gap lies; empty without a gap.
 
-    First the stage of the location, then the others that differ significantly.
+    First the stage of the location, then the others that differ significantly; these come first
+    where the stage of the location does not.
     """
     place = diagnosis.location
     if place is None:
@@ -542,9 +543,8 @@ def location_sentence(diagnosis: Diagnosis) -> str:
     if place.conditions != "all":
         limit = place.conditions.replace("speed_rad_s", "speed")
         parts.append(f"where {limit.replace('>=', '≥').replace('<=', '≤')} rad/s")
-    verb = "may show"
-    if place.p_value <= SURE:
-        verb = "begins" if begins(diagnosis) else "shows"
+    sure = place.p_value <= SURE
+    verb = "may show" if not sure else "begins" if begins(diagnosis) else "shows"
     sentence = (
         f"The gap {verb} in the {_row_words(diagnosis, place.stage)}: {', '.join(parts)}; "
         f"{evidence(place.p_value)}."
@@ -555,6 +555,8 @@ def location_sentence(diagnosis: Diagnosis) -> str:
         return sentence
     ranked = sorted(others, key=lambda name: -others[name])
     also = joined([f"in the {_row_words(diagnosis, name)}" for name in ranked])
+    if not sure:
+        return f"The gap shows {also}. It{sentence.removeprefix('The gap')}"
     return f"{sentence} It shows {also} as well."
 
 
