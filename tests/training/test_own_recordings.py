@@ -48,6 +48,18 @@ def test_of_a_table_that_somebody_has_corrected_the_corrections_count_alone(tmp_
     assert sum("labels.csv: is not read" in line for line in refusals) == 1
 
 
+def test_a_table_beside_the_folder_of_its_recordings_is_enough(tmp_path):
+    write(tmp_path / "hall" / "run")
+    table = tmp_path / "hall-labels.csv"
+    table.write_text("file,label,label_source\nrun.wav,creak,human\n")
+    samples, refusals = own_samples(table)
+    assert (labels_of(samples), refusals) == ([("run.wav", "creak")], [])
+    write(tmp_path / "yard" / "run")
+    samples, refusals = own_samples(table)
+    assert samples == []
+    assert "names run.wav, of which there is none or several" in refusals[0]
+
+
 @pytest.mark.parametrize(("seconds", "n"), [(0.5, 1), (1.01, 2), (7.3, 8)])
 def test_windows_of_a_track_are_half_a_second_to_one(tmp_path, seconds, n):
     write(tmp_path / "a", seconds=seconds, tracks=2)
@@ -74,7 +86,7 @@ def test_what_cannot_be_used_is_named_in_one_line_each(tmp_path):
         "short.wav: creak",
         "no track '3'",
         "label 'meow'",
-        "gone.wav, which is not there",
+        "gone.wav, of which there is none or several",
     ):
         assert sum(part in line for line in refusals) == 1, part
     samples, refusals = own_samples(tmp_path)

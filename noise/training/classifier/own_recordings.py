@@ -138,14 +138,17 @@ def _from_folders(folder: Path, refusals: list[str]) -> dict[Path, list[_Stretch
 
 
 def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
-    """Return the stretches of a label table by file; of one with corrections, these alone."""
+    """Return the stretches of a label table by file; of one with corrections, these alone.
+
+    Its recordings are beside it or, as where the table is beside their folder, anywhere below.
+    """
     by_file: dict[Path, list[_Stretch]] = {}
     unknown = set()
     rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
     by_human = any(row["label_source"] == HUMAN for row in rows)
     for row in rows:
-        path = table.parent / str(row["file"])
-        if not is_file(path):
+        path = _beside_or_below(table, str(row["file"]))
+        if path is None:
             unknown.add(str(row["file"]))
         elif row["label_source"] == HUMAN or not by_human:
             start, end = row["start_s"], row["end_s"]
@@ -156,8 +159,20 @@ def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
                 str(row["channel"] or "all"),
             )
             by_file.setdefault(path, []).append(stretch)
-    refusals += [f"{table}: names {file}, which is not there" for file in sorted(unknown)]
+    refusals += [
+        f"{table}: names {file}, of which there is none or several" for file in sorted(unknown)
+    ]
     return by_file
+
+
+def _beside_or_below(table: Path, file: str) -> Path | None:
+    """Return the only recording that a row of a table can mean; None if there is none."""
+    if is_file(table.parent / file):
+        return table.parent / file
+    names = Path(file).parts
+    below = (path for path, _ in files_below(table.parent) if path.parts[-len(names) :] == names)
+    first, second = next(below, None), next(below, None)
+    return first if second is None else None
 
 
 def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[Sample]:
