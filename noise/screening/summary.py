@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from noise.base.labels import PERSISTS
+from noise.base.progress import counted
 from noise.screening.advice import Offer
 from noise.screening.grid import Grid
 from noise.screening.mapping import BEYOND, REFINED, SIMULATED, UNCHANGED, DesignMap
@@ -64,13 +65,13 @@ def use_words(mapped: DesignMap) -> tuple[str, list[str]]:
     >>> from noise.screening.screen import screen
     >>> use = Use(speed=(2.0, 12.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
     >>> use_words(screen(["PDMS"], use).maps[0])
-    ('quiet in its use, all 2 conditions', [])
+    ('quiet in its use (2 conditions)', [])
     """
     label = mapped.label[..., mapped.grid.used]
     shares = {name: float(np.mean(label == name)) for name in _NOISES}
     noises = sorted((name for name in shares if shares[name]), key=lambda name: -shares[name])
     if not noises:
-        return f"quiet in its use, all {label.size} conditions", []
+        return f"quiet in its use ({counted(label.size, 'condition')})", []
     noisy = sum(share for name, share in shares.items() if name != PERSISTS)
     head = f"noisy at {percent(noisy)} of its use" if noisy else "quiet from rest in its use"
     return head, [
@@ -331,7 +332,7 @@ def _noise_at(mapped: DesignMap, at: Condition) -> str:
 def _sure_words(one: Standing, mapped: DesignMap) -> list[str]:
     """Return phrases on how the results of a design were obtained and how exact they are."""
     count, total = mapped.count(SIMULATED), mapped.label.size
-    texts = [f"{count} of {total} points were simulated"]
+    texts = [f"{count} of {counted(total, 'point')} were simulated"]
     steps = [b - a for a, b in pairwise(mapped.grid.speed)]
     if steps and mapped.open:
         texts.append(
@@ -361,7 +362,7 @@ def summary_lines(screening: Screening) -> list[str]:
     >>> from noise.screening.screen import screen
     >>> lines = summary_lines(screen(["PDMS"], Use(speed=(1.0, 5.0), support_stiffness=(2214.0,))))
     >>> lines[0]
-    '1. PDMS, dry: quiet in its use, all 4 conditions'
+    '1. PDMS, dry: quiet in its use (4 conditions)'
     """
     lines = []
     for one in screening.standings:
@@ -376,7 +377,7 @@ def summary_lines(screening: Screening) -> list[str]:
     return [
         *lines,
         conditions_words(screening),
-        f"{points} points, advice and tolerances in {screening.seconds:.1f} s: {how}",
+        f"{counted(points, 'point')} in {screening.seconds:.1f} s: {how}",
     ]
 
 
@@ -414,4 +415,4 @@ def conditions_words(screening: Screening) -> str:
     axes = dict.fromkeys(words for grid in grids for words in grid.words)
     n_points = sum(math.prod(grid.shape) for grid in grids)
     same = "the same " if len(screening.designs) > 1 else ""
-    return f"each design at {same}{n_points} points: {'; '.join(axes)}"
+    return f"each design at {same}{counted(n_points, 'point')}: {'; '.join(axes)}"

@@ -54,13 +54,13 @@ def test_maps_margins_ranking_and_pictures_are_written(tmp_path, capsys):
     critical = rows(out / "critical_speeds.csv")
     assert [row["v_crit2_stability_rad_s"] for row in critical] == ["0.0", "0.0"]
     printed = capsys.readouterr().out
-    assert printed.startswith("1. PDMS, dry: quiet in its use, all 3 conditions")
+    assert printed.startswith("1. PDMS, dry: quiet in its use (3 conditions)")
     for word in ("exposure", "risk"):
         assert word not in printed
     advice = rows(out / "advice.csv")
     assert {row["design"] for row in advice} == {"fluorocarbon-thesis"}
     assert {row["ends_noise"] for row in advice} <= {"True", "False", "true", "false"}
-    assert "6 points, " in printed
+    assert "6 points in " in printed
     assert "6 simulated" in printed
 
 
