@@ -25,7 +25,7 @@ from noise.app.labels import Labels
 from noise.app.opened import Opened
 from noise.app.requests import choice, number
 from noise.base.labels import LABELS
-from noise.base.progress import LINES
+from noise.base.progress import LINES, say
 from noise.base.tables import plain_cell
 from noise.labels.corrections import version
 
@@ -59,6 +59,11 @@ def routes(opened: Opened) -> list[BaseRoute]:
     if opened.table is None:
         return [Route("/api/recordings", _nothing)]
     labels = Labels(opened.jobs, opened.table)
+    if (file := labels.foreign_file()) is not None:
+        say(
+            f"note: {opened.table} names none of these recordings ({file}, ...); to see its "
+            "labels, open the folder that its files are relative to together with the table"
+        )
     labelling = Command()
     opened.leaving.callback(labelling.stop)
 

@@ -58,6 +58,13 @@ class Labels:
         self._redo: list[_Correction] = []
         self._read_table()
 
+    def foreign_file(self) -> str | None:
+        """Return a file of the table if it names none of the recordings."""
+        with self._lock:
+            if not self._others or any(self._rows):
+                return None
+            return min(str(row["file"]) for row in self._others)
+
     def refresh(self) -> None:
         """Read the table if it has changed."""
         with self._lock:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Collection
 from pathlib import Path
 
 from models.errors import ParameterError
@@ -19,20 +18,6 @@ OPTIONS = (
 )
 
 
-def note_foreign_table(table: Path, recordings: Collection[str]) -> None:
-    """Note that a label table names none of the opened recordings, as of another folder."""
-    from noise.labels.table import read_label_table
-
-    if not table.is_file():
-        return
-    names = {str(row["file"]) for row in read_label_table(table, [])}
-    if names and names.isdisjoint(recordings):
-        say(
-            f"note: {table} names none of these recordings ({min(names)}, ...); to see its labels, "
-            "open the folder that its files are relative to together with the table"
-        )
-
-
 def run(options: Namespace) -> int:
     """Serve the app until the user stops it."""
     from noise.app.opened import open_paths
@@ -45,7 +30,6 @@ def run(options: Namespace) -> int:
         print(address, flush=True)
         if opened.table is not None:
             say(f"corrections are written to {opened.table}")
-            note_foreign_table(opened.table, [job.name for job in opened.jobs])
         if not options.no_browser:
             import webbrowser
 

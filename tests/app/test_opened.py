@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from models.errors import ParameterError
+from noise.app.label_view import routes
 from noise.app.opened import open_paths
 from noise.base.tables import write_table
 from noise.cli import main
-from noise.commands.open import note_foreign_table
 from noise.labels.table import COLUMNS
 from tests.helpers.labelled_folder import made_row, write_folder
 
@@ -86,8 +86,9 @@ def test_a_port_that_is_none_is_refused_at_once(capsys, port):
 def test_a_table_that_names_other_recordings_is_noted(tmp_path, capsys):
     table = tmp_path / "labels.csv"
     write_table(table, COLUMNS, [made_row("creak.wav")])
-    note_foreign_table(table, ["creak.wav"])
-    note_foreign_table(tmp_path / "none.csv", ["creak.wav"])
+    write_folder(tmp_path / "recordings", ("creak.wav",), [])
+    routes(open_paths([tmp_path]))  # the only recording of that name
     assert capsys.readouterr().err == ""
-    note_foreign_table(table, ["recordings/creak.wav"])
+    write_folder(tmp_path / "audio", ("creak.wav",), [])
+    routes(open_paths([tmp_path]))
     assert "names none of these recordings (creak.wav, ...)" in capsys.readouterr().err

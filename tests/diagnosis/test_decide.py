@@ -221,9 +221,10 @@ def fitted(monkeypatch):
     monkeypatch.setattr(decide, "fit_effects", fit)
     monkeypatch.setattr(decide, "weakened", lambda _fits, fit: fit)
 
-    def tried(before, after, always=()):
+    def tried(before, after, always=(), left_by=lambda _model: {}):
         comparison = SimpleNamespace(squared=lambda model, _: squared(after.get(model, 5.9)))
-        return fit_hypotheses(fits_of(6.0, 5.9, {}, comparison, (), always), before), noted
+        fits = fits_of(6.0, 5.9, {}, comparison, (), always)
+        return fit_hypotheses(fits, before, left_by), noted
 
     return tried
 
@@ -237,6 +238,18 @@ def test_the_first_three_are_fitted_where_the_likeliest_closes_nothing(fitted):
     third = frozenset({"static_ageing"})
     before = chances({PARTIAL: 0.96, WEAK: 0.01, third: 0.005}, unknown=0.001, parameters=0.001)
     assert fitted(before, {PARTIAL: 6.5, WEAK: 6.5})[1] == [PARTIAL, WEAK, third]
+
+
+def test_what_a_fit_leaves_is_diagnosed_where_it_tells_of_larger_sets(fitted):
+    before, diagnosed = chances({PARTIAL: 0.5, WEAK: 0.2, PAIR: 0.2}), []
+
+    def left_by(model):
+        diagnosed.append(model)
+        return {}
+
+    _, noted = fitted(before, {}, WEAK, left_by)
+    assert set(noted) == {WEAK, PARTIAL, PAIR}
+    assert diagnosed == [PARTIAL]
 
 
 def test_effects_of_the_users_own_are_fitted_whatever_their_chance(fitted):

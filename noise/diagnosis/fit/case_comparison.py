@@ -39,7 +39,6 @@ from noise.diagnosis.gap import (
     signature,
 )
 from noise.diagnosis.simulated.model_runs import (
-    OFFSETS,
     Model,
     ModelRuns,
     with_effects,
@@ -175,8 +174,7 @@ class CaseComparison:
         ParameterError
             The model cannot be simulated.
         """
-        offsets = dict(zip(OFFSETS, np.exp(model.offsets).tolist(), strict=True))
-        rig = with_effects(with_offsets(self.rig, offsets), model.effects)
+        rig = with_effects(with_offsets(self.rig, model.factors), model.effects)
         own = {spec.name: self.effect_of(spec) for spec in model.effects}
         return case_table(self.recordings, rig, library={**self.library, **own})
 

@@ -104,8 +104,8 @@ class CaseFits:
         alone, in squared floors [-].
     of : mapping of frozenset of str to HypothesisFit
     remaining : mapping of frozenset of str to mapping of str to float
-        Probability of each cause in what the fit of a set leaves [-]; that of parameters alone
-        included.
+        Probability of each cause in what the fit of a set leaves [-]; empty of a set whose fit
+        tells nothing of larger ones.
     unlearned : frozenset of str
         Effects of which only a fit tells: the user's own, and irregularities that the rig file
         lists.
@@ -386,7 +386,11 @@ def fit_hypotheses(
         # A model that breaks down on recordings that it has not seen closes nothing there.
         after = np.where(np.isfinite(after), after, np.maximum(fits.before, fits.recalibrated))
         fit = weakened(fits, HypothesisFit(names, fitted, after))
-        remaining = {**fits.remaining, hypothesis: left_by(fit.fitted.model)}
+        # What it leaves is weighed for larger sets of learned effects alone.
+        larger = any(hypothesis < other for other in hypotheses)
+        weighed = larger and not hypothesis & fits.unlearned
+        left = left_by(fit.fitted.model) if weighed else {}
+        remaining = {**fits.remaining, hypothesis: left}
         return replace(fits, of={**fits.of, hypothesis: fit}, remaining=remaining)
 
     for name in sorted(fits.unlearned):

@@ -341,9 +341,7 @@ def _offered(
 
 def _made(case: Case, model: Model) -> tuple[dict[str, float], Rig] | None:
     """Return factors and the rig with them and with effects, to the digits of a rig file."""
-    factors = {
-        name: math.exp(x) for name, x in zip(OFFSETS, model.offsets, strict=True) if x != 0.0
-    }
+    factors = {name: factor for name, factor in model.factors.items() if factor != 1.0}
     kinetic, critical = (factors.get(name, 1.0) for name in ("kinetic_torque", "critical_torque"))
     least = max(kinetic * fit.kinetic_torque / fit.critical_torque for fit in case.rig.fits)
     if critical < least * (1.0 + _ROUNDING):  # it is at least the kinetic torque

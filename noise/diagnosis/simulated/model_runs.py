@@ -115,6 +115,11 @@ class Model:
     offsets: tuple[float, ...] = (0.0,) * len(OFFSETS)
     effects: tuple[LawSpec, ...] = ()
 
+    @property
+    def factors(self) -> dict[str, float]:
+        """Factors on `OFFSETS` by name [-]."""
+        return {name: math.exp(x) for name, x in zip(OFFSETS, self.offsets, strict=True)}
+
 
 def with_effects(rig: Rig, effects: Sequence[LawSpec]) -> Rig:
     """Return a rig with further effects; one that it lists already is replaced.
@@ -253,9 +258,8 @@ class ModelRuns:
         of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion))
 
         def radiated() -> Signals:
-            factors = {n: math.exp(x) for n, x in zip(OFFSETS, model.offsets, strict=True)}
             once, at = perturb_run(
-                with_offsets(self.rig, factors), known_condition(template.condition), scatter,
+                with_offsets(self.rig, model.factors), known_condition(template.condition), scatter,
                 np.random.default_rng([seed, 0]),
             )  # fmt: skip
             plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
