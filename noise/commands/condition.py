@@ -334,6 +334,8 @@ def _logged_speed(path: Path, seconds: float) -> LoggedSpeed:
             f"--speed {path} covers {time[0]:g} to {time[-1]:g} s, the run 0 to {seconds:g} s; "
             "outside of the log its nearest speed is held"
         )
+    elif time[-1] > seconds:
+        note(f"--speed {path} lasts {time[-1]:g} s, the run takes its first {seconds:g} s")
     return logged
 
 

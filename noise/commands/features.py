@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from noise.base.progress import note
 from noise.commands.batch import BATCH, run_batch
 from noise.commands.options import CALIBRATION, full_scale_of
 
@@ -57,7 +58,14 @@ class FeatureExtraction:
     def rows(self, path: Path, name: str) -> tuple[list[dict[str, object]], bool]:
         """Return the row of a recording, and whether it is calibrated."""
         from features import recording_features
+        from features.table import piece_count
         from noise.recordings.files import open_blocks
 
         with open_blocks(path, full_scale=self.full_scale) as blocks:
+            if (pieces := piece_count(blocks.n_samples)) > 1:
+                length = blocks.n_samples / pieces / blocks.rate
+                note(
+                    f"{name}: its features are computed in {pieces} pieces of {length:.3g} s and "
+                    "averaged by power"
+                )
             return [{"file": name, **recording_features(blocks)}], blocks.calibrated

@@ -30,6 +30,12 @@ def runs(tmp_path, monkeypatch):
     return tmp_path / "runs"
 
 
+def test_features_of_a_long_recording_are_said_to_come_from_pieces(runs, capsys, monkeypatch):
+    monkeypatch.setattr("features.table.piece_count", lambda _: 2)
+    assert main(["features", "runs/a.wav"]) == 0
+    assert "computed in 2 pieces of 0.05 s and averaged by power" in capsys.readouterr().err
+
+
 def test_features_name_the_bad_file_in_the_table_and_go_on(runs, capsys):
     assert main(["features", "runs", "./runs/a.wav", "--out", "new/f.csv"]) == 1
     out, err = capsys.readouterr()

@@ -88,7 +88,7 @@ def test_the_shaft_turns_either_way_on_a_ramp_or_to_and_fro(call, given, shaft):
     [
         ("0,1\n1,3\n", ""),
         ("\ufeffspeed_rad_s, temperature_C, time_s\n1,20,0\n\n3,21,1\n", ""),
-        ("time_s,speed_rad_s\r\n0,1\r\n9,19\r\n", ""),
+        ("time_s,speed_rad_s\r\n0,1\r\n9,19\r\n", "the run takes its first 1 s"),
         ("0.5,2\n0.6,2.2\n", "covers 0.5 to 0.6 s, the run 0 to 1 s"),
         ("Zeit [ms];Drehzahl [rpm]\n0;9,5492966\n1000;28,6478898\n", ""),
     ],
