@@ -90,9 +90,9 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
         The folder cannot be written.
     """
     out = Path(out)
-    say("simulating four conditions of the rig (the first run compiles the solver)")
+    say("the first simulation takes longest: it compiles the solver")
     *generators, hammer = np.random.default_rng(seed).spawn(len(CASES) + 1)
-    for case, rng in track(list(zip(CASES, generators, strict=True)), "simulate"):
+    for case, rng in track(list(zip(CASES, generators, strict=True)), "simulating"):
         run = simulate(
             load_material_rig(case.material),
             case.speed,
@@ -104,10 +104,9 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
         write_recording(out / "recordings" / f"{case.name}.wav", run.recording)
     write_hits(out / "hits", hammer)
 
-    say("labelling, rendering, drawing")
     classifier = load_classifier()
     feature_rows, rows = [], []
-    for case in track(CASES, "label"):
+    for case in track(CASES, "labelling"):
         file = f"{case.name}.wav"
         # Read back, so that a simulated recording is treated like a measured one.
         recording = read_recording(out / "recordings" / file)

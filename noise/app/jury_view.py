@@ -46,7 +46,7 @@ _RATE = 48000
 
 def routes(opened: Opened) -> list[BaseRoute]:
     """Return the routes of this view."""
-    votes = Votes(opened.folder / "votes.csv")
+    votes = Votes(opened.votes)
     playing = JuryPlaying(opened, SoundCache(opened))
     by_name: dict[str, list[int]] = {}
     for job in opened.jobs:

@@ -17,7 +17,7 @@ from noise.base.files import locked
 from noise.batch.work import Job
 from noise.labels.corrections import track, version
 from noise.labels.summary import labels_in, naming_row
-from noise.labels.table import HUMAN, LabelTable, read_label_table
+from noise.labels.table import HUMAN, LabelTable, read_label_table, table_recordings
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,8 @@ class Labels:
             self.refresh()
             before = self._rows[index]
             self._check_version(index, of, before)
-            after = as_rows(segments, job.name, before, measured)
+            name = str(before[0]["file"]) if before else job.name  # as in the table
+            after = as_rows(segments, name, before, measured)
             self._write(index, after)
             changed = _changed_tracks(before, after)
             was, now = ([row for row in rows if track(row) in changed] for rows in (before, after))
@@ -193,12 +194,17 @@ class Labels:
         state = self._state()  # before: what is written meanwhile is read again
         rows = [] if state is None else read_label_table(self.path)
         self._table_state = state  # after: what could not be read is not taken for what was
-        by_recording = _by_recording(rows, self._jobs, self.path)
+        paths, names = [job.path for job in self._jobs], [job.name for job in self._jobs]
+        files = (str(row["file"]) for row in rows)
+        path_of = table_recordings(files, self.path, paths, names)
+        by_path: dict[Path | None, list[Row]] = {}
+        for row in rows:
+            by_path.setdefault(path_of[str(row["file"])], []).append(row)
         for job in self._jobs:
-            of_one = [row | {"file": job.name} for row in by_recording.pop(job.index, [])]
+            of_one = by_path.pop(job.path, [])
             if of_one != self._rows[job.index]:
                 self._put(job.index, of_one)
-        self._others = by_recording.pop(None, [])
+        self._others = by_path.pop(None, [])
 
     def _state(self) -> tuple[int, ...] | None:
         """Return the file state of the table; None if it does not exist."""
@@ -222,33 +228,6 @@ def _order(row: Row) -> tuple[int, float]:
         int(number) if number.isascii() and number.isdecimal() else 0,
         start if isinstance(start, float) else 0.0,
     )
-
-
-def _by_recording(
-    rows: Sequence[Row], jobs: Sequence[Job], table: Path
-) -> dict[int | None, list[Row]]:
-    """Group rows by the index of their recording; None has those of other recordings.
-
-    A file of the table is the recording of that name, else the one at that place beside the table,
-    else the only one whose path ends so.
-    """
-    by_name = {job.name: job.index for job in jobs}
-    by_path = {job.path.absolute().as_posix(): job.index for job in jobs}
-
-    def find(file: str) -> int | None:
-        if file in by_name:
-            return by_name[file]
-        beside = (table.absolute().parent / file).as_posix()
-        if beside in by_path:
-            return by_path[beside]
-        alike = [index for path, index in by_path.items() if path.endswith(f"/{file}")]
-        return alike[0] if len(alike) == 1 else None
-
-    place = {file: find(file) for file in dict.fromkeys(str(row["file"]) for row in rows)}
-    parted: dict[int | None, list[Row]] = {}
-    for row in rows:
-        parted.setdefault(place[str(row["file"])], []).append(row)
-    return parted
 
 
 def summary(index: int, name: str, rows: Sequence[Row]) -> dict[str, object]:

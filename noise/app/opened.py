@@ -34,8 +34,10 @@ class Opened:
     rigs : tuple of Path
         Rig files.
     folder : Path
-        Where designs and votes are saved: beside the rig file, else beside the folder of
-        recordings, never in it.
+        Where designs are saved: beside the rig file, else beside the folder of recordings, never in
+        it.
+    votes : Path
+        Table of votes in `folder`, with the name of the folder of recordings.
     sources : tuple of Path
         Recordings and folders that the recordings were found in.
     seed : int
@@ -48,6 +50,7 @@ class Opened:
     table: Path | None
     rigs: tuple[Path, ...]
     folder: Path
+    votes: Path
     sources: tuple[Path, ...] = ()
     seed: int = 0
     leaving: ExitStack = field(default_factory=ExitStack)
@@ -124,7 +127,9 @@ def open_paths(
         save = rigs[0].absolute().parent
     elif save is None and sounds:
         save = folder.parent
-    return Opened(tuple(jobs), table, tuple(rigs), save or folder, tuple(sounds), seed)
+    save = save or folder
+    votes = save / f"{folder.name}-votes.csv"
+    return Opened(tuple(jobs), table, tuple(rigs), save, votes, tuple(sounds), seed)
 
 
 def _table_of(folder: Path) -> Path:

@@ -29,6 +29,7 @@ def run(options: Namespace) -> int:
     rows = run_demo(options.out, seed=options.seed)
     page = options.out / "report.html"
     report(*result_lines(rows), page)
+    say(f"to listen and to correct labels: bushing-noise open {options.out}")
     if not options.no_browser and has_display():
         import webbrowser
 

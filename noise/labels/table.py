@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models.errors import RecordingError
 from models.foreign_file import refusing
 from noise.base.labels import LABELS
-from noise.base.progress import counted
+from noise.base.progress import counted, readable
 from noise.base.tables import check_table_path, read_table, write_table
 
 if TYPE_CHECKING:
@@ -186,6 +186,50 @@ def read_label_table(path: Path, refusals: list[str] | None = None) -> list[dict
                 raise
             refusals.append(str(error))
     return checked
+
+
+def table_recordings(
+    files: Iterable[str], table: Path, paths: Sequence[Path], names: Sequence[str] = ()
+) -> dict[str, Path | None]:
+    """Return the recording of each file that a label table names; None without exactly one.
+
+    Parameters
+    ----------
+    files : iterable of str
+        As the table names them: relative to some folder, which the table does not state.
+    table : Path
+    paths : sequence of Path
+        Recordings.
+    names : sequence of str
+        Names of the recordings that have priority, such as in a table that they were written to.
+
+    Returns
+    -------
+    dict of str to Path or None
+        The recording of that name, else the one at that place beside the table, else the only one
+        whose path ends so.
+
+    Examples
+    --------
+    >>> runs = [Path("day1/a.wav"), Path("day2/a.wav"), Path("day2/b.wav")]
+    >>> found = table_recordings(["a.wav", "b.wav", "day1/a.wav"], Path("labels.csv"), runs)
+    >>> [path and path.as_posix() for path in found.values()]
+    [None, 'day2/b.wav', 'day1/a.wav']
+    """
+    by_name = dict(zip(names, paths, strict=False))
+    by_place = {path.resolve(): path for path in paths}
+    by_ending = [(readable(place.as_posix()), path) for place, path in by_place.items()]
+    folder = table.resolve().parent
+
+    def find(file: str) -> Path | None:
+        if file in by_name:
+            return by_name[file]
+        if (beside := (folder / file).resolve()) in by_place:
+            return by_place[beside]
+        alike = [path for place, path in by_ending if place.endswith(f"/{file}")]
+        return alike[0] if len(alike) == 1 else None
+
+    return {file: find(file) for file in dict.fromkeys(files)}
 
 
 def _checked(row: object, where: str) -> dict[str, object]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +27,7 @@ from noise.classifier import Classifier, load_classifier
 from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.labels.summary import naming_row
-from noise.labels.table import read_label_table
+from noise.labels.table import read_label_table, table_recordings
 from noise.pages import blocks as b
 from noise.pages.clips import (
     BYTES_A_SECOND,
@@ -73,23 +73,6 @@ class Refusal:
         'is empty'
         """
         return cls(readable(str(path)), readable(str(error).removeprefix(f"{path}: ")))
-
-
-@dataclass(frozen=True)
-class _LabelTable:
-    path: Path
-    rows: tuple[Row, ...]
-
-    def of(self, recording: Path) -> tuple[Row, ...]:
-        """Return the rows of a recording.
-
-        A row's file is relative to some folder that the table does not name: so it is one below
-        the table's own folder, or else any whose path ends like it.
-        """
-        resolved = recording.resolve()
-        folder, ending = self.path.parent, readable(resolved.as_posix())  # as tables have it
-        beside = tuple(r for r in self.rows if (folder / str(r["file"])).resolve() == resolved)
-        return beside or tuple(r for r in self.rows if ending.endswith(f"/{r['file']}"))
 
 
 @short_repr
@@ -189,7 +172,7 @@ def review(
             f"{1e-6 * least:.1f} MB; allow more, or name fewer"
         )
     longest = min(seconds, longest)
-    labelled = [next(filter(None, (one.of(path) for one in tables)), ()) for path, _ in recordings]
+    labelled = _labelled([path for path, _ in recordings], tables)
     needs = any(all(row["label"] is None for row in rows) for rows in labelled)
     classifier = load_classifier() if classify and needs else None
     entries: dict[str, Entry] = {}
@@ -249,7 +232,7 @@ def _inputs(paths: Sequence[Path]) -> tuple[list[tuple[Path, str]], list[Path]]:
         files = find_recordings(path)  # complains of what is not there
         if path.is_dir():
             only_tables = False
-            recordings |= _originals(files)
+            recordings |= {file.resolve(): (file, name) for file, name in files}
             for file, _ in files_below(path):
                 if file.suffix.lower() in TABLE_ENDINGS and table_columns(file) >= {
                     "file",
@@ -262,23 +245,13 @@ def _inputs(paths: Sequence[Path]) -> tuple[list[tuple[Path, str]], list[Path]]:
             only_tables = False
             recordings.setdefault(path.resolve(), files[0])
     if only_tables and tables:
-        recordings = _originals(find_recordings(next(iter(tables.values())).absolute().parent))
+        files = find_recordings(next(iter(tables.values())).absolute().parent)
+        recordings = {file.resolve(): (file, name) for file, name in files}
     counts = Counter(name for _, name in recordings.values())
     return [
         (path, name if counts[name] == 1 else readable(str(path)))
         for path, name in recordings.values()
     ], list(tables.values())
-
-
-def _originals(files: Sequence[tuple[Path, str]]) -> dict[Path, tuple[Path, str]]:
-    """Return files by their place, without ``audio/run07.wav`` beside ``recordings/run07.wav``."""
-    there = {path.resolve(): (path, name) for path, name in files}
-    return {
-        place: file
-        for place, file in there.items()
-        if place.parent.name != "audio"
-        or place.parent.with_name("recordings") / place.name not in there
-    }
 
 
 def _is_sidecar(path: Path) -> bool:
@@ -287,16 +260,29 @@ def _is_sidecar(path: Path) -> bool:
     return is_json and any(path.with_suffix(ending).is_file() for ending in formats())
 
 
-def _read_tables(paths: Iterable[Path]) -> tuple[list[_LabelTable], list[Refusal]]:
-    tables, refused = [], []
+def _read_tables(paths: Iterable[Path]) -> tuple[dict[Path, list[Row]], list[Refusal]]:
+    tables: dict[Path, list[Row]] = {}
+    refused = []
     for path in paths:
         lines: list[str] = []
         try:
-            tables.append(_LabelTable(path, tuple(read_label_table(path, lines))))
+            tables[path] = [*read_label_table(path, lines)]
         except BushingNoiseError as error:
             lines.append(str(error))
         refused += [Refusal.of(path, line) for line in lines]
     return tables, refused
+
+
+def _labelled(
+    recordings: Sequence[Path], tables: Mapping[Path, Sequence[Row]]
+) -> list[tuple[Row, ...]]:
+    """Return the rows of each recording, of the first table that has some."""
+    found: dict[Path, tuple[Row, ...]] = {}
+    for table, rows in tables.items():
+        of_file = table_recordings((str(row["file"]) for row in rows), table, recordings)
+        for path in {path for path in of_file.values() if path is not None and path not in found}:
+            found[path] = tuple(row for row in rows if of_file[str(row["file"])] == path)
+    return [found.get(path, ()) for path in recordings]
 
 
 def _read_entry(

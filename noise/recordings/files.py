@@ -263,6 +263,8 @@ _MAX_NAMES = 3
 
 _NOT_READ = "recordings of this format are not read; convert to WAV or FLAC, as by ffmpeg"
 
+_RENDERED = "made for listening from the files of the same names in recordings"
+
 _OTHERS = (
     *(".3gp", ".aac", ".ac3", ".amr", ".ape", ".ats", ".au", ".caf", ".d7d", ".dsf", ".dxd"),
     *(".hdf", ".m4a", ".m4b", ".mat", ".mka", ".mkv", ".mov", ".mp2", ".mp4", ".pti", ".sie"),
@@ -332,6 +334,13 @@ def files_below(
     return sorted(files, key=lambda entry: entry[1])
 
 
+def _original(path: Path) -> Path | None:
+    """Return ``recordings/run07.wav`` of ``audio/run07.wav``, as `demo` writes them."""
+    if path.parent.name != "audio" or path.suffix.lower() != ".wav":
+        return None
+    return path.parent.with_name("recordings") / path.name
+
+
 def is_file(path: Path) -> bool:
     """Whether a path is a file; False also for names that the system does not accept.
 
@@ -355,8 +364,9 @@ def find_recordings(
     ----------
     paths : path-like or iterable of path-like
         Files, with any suffix, or folders, which are searched recursively. In a folder hidden
-        files and unknown suffixes are skipped; paths that are no files and recordings of an
-        unsupported format are skipped with a note.
+        files and unknown suffixes are skipped; paths that are no files, recordings of an
+        unsupported format, and ``audio/run07.wav`` beside ``recordings/run07.wav`` are skipped
+        with a note.
 
     Returns
     -------
@@ -384,8 +394,12 @@ def find_recordings(
         try:
             if path.is_dir():
                 left_out: dict[str, list[str]] = {}
-                for file, name in files_below(path, left_out):
-                    if file.suffix.lower() in formats():
+                files = files_below(path, left_out)
+                there = {file for file, _ in files}
+                for file, name in files:
+                    if _original(file) in there:
+                        left_out.setdefault(_RENDERED, []).append(name)
+                    elif file.suffix.lower() in formats():
                         recordings.append((file, readable(name)))
                     elif file.suffix.lower() in _OTHERS:
                         left_out.setdefault(_NOT_READ, []).append(name)

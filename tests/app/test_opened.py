@@ -5,11 +5,14 @@ from __future__ import annotations
 import pytest
 
 from models.errors import ParameterError
+from noise.app.corrected_segments import Correction
 from noise.app.label_view import routes
+from noise.app.labels import Labels
 from noise.app.opened import open_paths
 from noise.base.tables import write_table
 from noise.cli import main
-from noise.labels.table import COLUMNS
+from noise.labels.corrections import version
+from noise.labels.table import COLUMNS, read_label_table
 from tests.helpers.labelled_folder import made_row, write_folder
 
 
@@ -24,6 +27,7 @@ def test_a_folder_has_its_recordings_and_the_table_in_it(folder):
     assert opened.table == folder / "labels.csv"
     assert opened.job(1).path == folder / "b.wav"
     assert opened.folder == folder.parent  # nothing is saved among the recordings
+    assert opened.votes == folder.parent / "runs-votes.csv"
     with pytest.raises(ParameterError, match="no recording 2"):
         opened.job(2)
 
@@ -83,12 +87,27 @@ def test_a_port_that_is_none_is_refused_at_once(capsys, port):
     assert "from 0 to 65535" in said
 
 
+def test_the_folder_of_the_demo_is_matched_with_its_table(tmp_path, capsys):
+    """Its table names files of ``recordings``; the same names in ``audio`` are renderings."""
+    table = tmp_path / "labels.csv"
+    write_table(table, COLUMNS, [made_row("creak.wav")])
+    for folder in ("recordings", "audio"):
+        write_folder(tmp_path / folder, ("creak.wav",), [])
+    opened = open_paths([tmp_path])
+    assert [job.name for job in opened.jobs] == ["recordings/creak.wav"]
+    assert "left out audio/creak.wav: made for listening" in capsys.readouterr().err
+    labels = Labels(opened.jobs, opened.table)
+    assert labels.foreign_file() is None
+    labels.correct(0, [Correction(0.0, 2.0, "squeal")], version(labels.rows(0)))
+    assert [row["file"] for row in read_label_table(table)] == ["creak.wav"]
+
+
 def test_a_table_that_names_other_recordings_is_noted(tmp_path, capsys):
     table = tmp_path / "labels.csv"
     write_table(table, COLUMNS, [made_row("creak.wav")])
     write_folder(tmp_path / "recordings", ("creak.wav",), [])
     routes(open_paths([tmp_path]))  # the only recording of that name
     assert capsys.readouterr().err == ""
-    write_folder(tmp_path / "audio", ("creak.wav",), [])
+    write_folder(tmp_path / "copies", ("creak.wav",), [])
     routes(open_paths([tmp_path]))
     assert "names none of these recordings (creak.wav, ...)" in capsys.readouterr().err

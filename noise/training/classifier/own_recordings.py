@@ -19,7 +19,7 @@ from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
-from noise.labels.table import HUMAN, read_label_table
+from noise.labels.table import HUMAN, read_label_table, table_recordings
 from noise.labels.windows import has_window_channel, window_features
 from noise.recordings import find_recordings
 from noise.recordings.files import files_below, is_file, open_blocks
@@ -146,8 +146,12 @@ def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
     unknown = set()
     rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
     by_human = any(row["label_source"] == HUMAN for row in rows)
+    files = {str(row["file"]) for row in rows}
+    there = [path for path, _ in files_below(table.parent)]
+    there += [path for file in files if is_file(path := table.parent / file)]
+    paths = table_recordings(files, table, there)
     for row in rows:
-        path = _beside_or_below(table, str(row["file"]))
+        path = paths[str(row["file"])]
         if path is None:
             unknown.add(str(row["file"]))
         elif row["label_source"] == HUMAN or not by_human:
@@ -163,16 +167,6 @@ def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
         f"{table}: names {file}, of which there is none or several" for file in sorted(unknown)
     ]
     return by_file
-
-
-def _beside_or_below(table: Path, file: str) -> Path | None:
-    """Return the only recording that a row of a table can mean; None if there is none."""
-    if is_file(table.parent / file):
-        return table.parent / file
-    names = Path(file).parts
-    below = (path for path, _ in files_below(table.parent) if path.parts[-len(names) :] == names)
-    first, second = next(below, None), next(below, None)
-    return first if second is None else None
 
 
 def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[Sample]:

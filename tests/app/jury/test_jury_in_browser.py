@@ -58,7 +58,7 @@ class JuryPage(WatchedPage):
 
 
 def rows(folder):
-    return read_table(folder / "votes.csv")[1]
+    return read_table(folder / f"{folder.name}-votes.csv")[1]
 
 
 def votes(folder):

@@ -48,7 +48,7 @@ def rms(samples):
 
 
 def planned(folder, jury):
-    rows = read_table(folder / "votes.csv")[1]
+    rows = read_table(folder / f"{folder.name}-votes.csv")[1]
     return [(row["first"], row["second"]) for row in rows if row["jury"] == str(jury)]
 
 
