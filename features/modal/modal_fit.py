@@ -1,14 +1,14 @@
-"""Modal fit of measured response functions: poles, damping and residues.
+"""Modal fit of a measured response function: poles, damping and residues.
 
-The least-squares complex frequency method fits a rational function in z = exp(-i omega T) to all
-responses at once. It is linear, needs no starting values and handles close modes. With rising order
+The least-squares complex frequency method fits a rational function in z = exp(-i omega T) to the
+response. It is linear, needs no starting values and handles close modes. With rising order
 physical poles are stable while those that fit noise move, so modes are selected automatically from
 the stabilization diagram. Coefficients are complex and the band is mapped to half the unit circle,
 which keeps the equations well conditioned for any bandwidth. A band is divided into overlapping
 bands of few modes each, narrow ones first, then wide ones for broad modes.
 
-Residues follow from all poles by linear least squares, and poles that contribute almost nothing to
-any response are dropped. A few Gauss-Newton steps then fit poles and residues together, since the
+Residues follow from all poles by linear least squares, and poles that contribute almost nothing are
+dropped. A few Gauss-Newton steps then fit poles and residues together, since the
 linear fit weights lines by the denominator, which underestimates damping in noise.
 
 P. Guillaume, P. Verboven, S. Vanlanduit, H. Van der Auweraer, B. Peeters, A poly-reference
@@ -69,7 +69,7 @@ _ENOUGH = 1e-3  # relative gain of a step that is worth no further one
 
 
 class Pole(NamedTuple):
-    """Pole of response functions.
+    """Pole of a response function.
 
     Parameters
     ----------
@@ -86,32 +86,21 @@ class Pole(NamedTuple):
     orders: int
 
 
-class Responses(NamedTuple):
-    """Measured response functions with weights.
-
-    Parameters
-    ----------
-    f : ndarray, shape (n,)
-        [Hz], rising, above 0.
-    h : ndarray, shape (n_responses, n), complex
-        In any [unit].
-    weight : ndarray, shape (n_responses, n)
-        Weight of each line [-].
-    """
+class _Measured(NamedTuple):
+    """Response at frequencies [Hz], with the weight of each line."""
 
     f: NDArray[np.float64]
     h: NDArray[np.complex128]
     weight: NDArray[np.float64]
 
-    def at(self, lines: slice | NDArray[np.bool_]) -> Responses:
-        """Return the responses at some lines."""
-        return Responses(self.f[lines], self.h[:, lines], self.weight[:, lines])
+    def at(self, lines: slice | NDArray[np.bool_]) -> _Measured:
+        return _Measured(self.f[lines], self.h[lines], self.weight[lines])
 
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes of one or several response functions of a structure.
+    """Modes of a response function of a structure.
 
     H(omega) = sum_r [R_r / (i omega - s_r) + conj(R_r) / (i omega - conj(s_r))] + residuals,
     with the poles s_r = 2 pi f_r (-zeta_r + i sqrt(1 - zeta_r^2)).
@@ -122,9 +111,9 @@ class Modes:
         Undamped natural frequencies [Hz], rising.
     damping_ratio : ndarray, shape (n_modes,)
         Fractions of critical damping.
-    residues : ndarray, shape (n_responses, n_modes), complex
+    residues : ndarray, shape (n_modes,), complex
         R_r [unit of the response times rad/s].
-    residuals : ndarray, shape (n_responses, 4)
+    residuals : ndarray, shape (4,)
         Real factors of 1/(i omega)^2, 1, i omega and (i omega)^2, relative to the highest omega:
         the contribution of modes outside the band.
     orders : ndarray, shape (n_modes,)
@@ -135,8 +124,7 @@ class Modes:
     Examples
     --------
     >>> one = np.ones(1)
-    >>> none = np.zeros((1, 4))
-    >>> mode = Modes(100 * one, 0.02 * one, 1j * one[None], none, one.astype(int), 200.0)
+    >>> mode = Modes(100 * one, 0.02 * one, 1j * one, np.zeros(4), one.astype(int), 200.0)
     >>> mode.poles.round(1)
     array([-12.6+628.2j])
     """
@@ -154,7 +142,7 @@ class Modes:
         return _poles(self.frequency, self.damping_ratio)
 
     def response(self, frequency: ArrayLike) -> NDArray[np.complex128]:
-        """Return the response functions at frequencies.
+        """Return the response function at frequencies.
 
         Parameters
         ----------
@@ -163,11 +151,11 @@ class Modes:
 
         Returns
         -------
-        ndarray, shape (n_responses, n), complex
-            In the unit of the responses.
+        ndarray, shape (n,), complex
+            In the unit of the response.
         """
-        basis = modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
-        coefficients = np.hstack([self.residues.real, self.residues.imag, self.residuals])
+        basis = _modal_basis(self.poles, np.asarray(frequency, dtype=np.float64), self.highest)
+        coefficients = np.concatenate([self.residues.real, self.residues.imag, self.residuals])
         return np.asarray(coefficients @ basis)
 
     def only(self, some: slice | NDArray[np.bool_]) -> Modes:
@@ -176,64 +164,25 @@ class Modes:
             self,
             frequency=self.frequency[some],
             damping_ratio=self.damping_ratio[some],
-            residues=self.residues[:, some],
+            residues=self.residues[some],
             orders=self.orders[some],
         )
 
 
-def modes_of_poles(poles: list[Pole], measured: Responses) -> Modes:
-    """Return the modes of poles, with residues and residuals by linear least squares.
-
-    Parameters
-    ----------
-    poles : list of Pole
-    measured : Responses
-
-    Returns
-    -------
-    Modes
-
-    Examples
-    --------
-    >>> f = np.arange(50.0, 151.0)
-    >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f) / (2 * np.pi) ** 2
-    >>> modes = modes_of_poles([Pole(100.0, 0.02, 1)], Responses(f, H[None], np.ones((1, 101))))
-    >>> bool(np.allclose(modes.response(f), H))
-    True
-    """
+def _modes_of_poles(poles: list[Pole], measured: _Measured) -> Modes:
+    """Return the modes of poles, with residues and residuals by linear least squares."""
     frequency, ratio, orders = np.array(poles).reshape(-1, 3).T
     highest, n = float(measured.f[-1]), frequency.size
-    basis = modal_basis(_poles(frequency, ratio), measured.f, highest)
-    lines = zip(measured.h, measured.weight, strict=True)
-    factors = np.array([least_squares(basis * w, one * w) for one, w in lines])
-    residues = factors[:, :n] + 1j * factors[:, n : 2 * n]
-    return Modes(frequency, ratio, residues, factors[:, 2 * n :], orders.astype(np.intp), highest)
+    basis = _modal_basis(_poles(frequency, ratio), measured.f, highest)
+    factors = _least_squares(basis * measured.weight, measured.h * measured.weight)
+    residues = factors[:n] + 1j * factors[n : 2 * n]
+    return Modes(frequency, ratio, residues, factors[2 * n :], orders.astype(np.intp), highest)
 
 
-def modal_basis(
+def _modal_basis(
     poles: NDArray[np.complex128], f: NDArray[np.float64], highest: float
 ) -> NDArray[np.complex128]:
-    """Return the responses of unit residues, real and imaginary, and unit residuals.
-
-    Parameters
-    ----------
-    poles : ndarray, shape (n_modes,), complex
-        [rad/s]
-    f : ndarray, shape (n,)
-        [Hz]
-    highest : float
-        Reference frequency of the residuals [Hz].
-
-    Returns
-    -------
-    ndarray, shape (2 n_modes + 4, n), complex
-        [s] for residues, [-] for residuals.
-
-    Examples
-    --------
-    >>> modal_basis(np.array([-1.0 + 10j]), np.array([1.0, 2.0]), 2.0).shape
-    (6, 2)
-    """
+    """Return the responses of unit residues, real and imaginary, and of the four unit residuals."""
     s = 2j * np.pi * f
     here = 1 / (s - poles[:, None])
     there = 1 / (s - poles.conj()[:, None])
@@ -241,53 +190,20 @@ def modal_basis(
     return np.vstack([here + there, 1j * (here - there), x**-2, np.ones_like(x), x, x**2])
 
 
-def least_squares(
+def _least_squares(
     basis: NDArray[np.complex128], target: NDArray[np.complex128]
 ) -> NDArray[np.float64]:
-    """Return real factors of the rows of `basis` that sum to `target`, by normal equations.
-
-    Parameters
-    ----------
-    basis : ndarray, shape (n_rows, n), complex
-        In any unit.
-    target : ndarray, shape (n,) or (n_targets, n), complex
-        In any unit.
-
-    Returns
-    -------
-    ndarray, shape (n_rows,) or (n_targets, n_rows)
-        [unit of target over that of basis]
-
-    Examples
-    --------
-    >>> least_squares(np.array([[1.0, 1j], [0.0, 1j]]), np.array([2.0, 5j])).round(6)
-    array([2., 3.])
-    """
-    parts = real_and_imaginary(basis)
+    """Return real factors of the rows of `basis` that sum to `target`, by normal equations."""
+    parts = _real_and_imaginary(basis)
     scale = np.sqrt(np.maximum(np.sum(parts**2, axis=1), np.finfo(float).tiny))
     parts /= scale[:, None]
-    factors = np.linalg.lstsq(parts @ parts.T, parts @ real_and_imaginary(target).T, rcond=1e-13)[0]
+    right = parts @ _real_and_imaginary(target).T
+    factors = np.linalg.lstsq(parts @ parts.T, right, rcond=1e-13)[0]
     return np.asarray(factors.T / scale)
 
 
-def real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Return real and imaginary parts concatenated along the last axis.
-
-    Parameters
-    ----------
-    values : ndarray, shape (..., n), complex
-        In any [unit].
-
-    Returns
-    -------
-    ndarray, shape (..., 2 n)
-        In the unit of the values [unit].
-
-    Examples
-    --------
-    >>> real_and_imaginary(np.array([1 + 2j]))
-    array([1., 2.])
-    """
+def _real_and_imaginary(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Return real and imaginary parts concatenated along the last axis."""
     return np.concatenate([values.real, values.imag], axis=-1)
 
 
@@ -297,27 +213,8 @@ def _poles(
     return np.asarray(2 * np.pi * frequency * (-damping_ratio + 1j * np.sqrt(1 - damping_ratio**2)))
 
 
-def stable_poles(measured: Responses) -> list[Pole]:
-    """Return the poles of response functions that are stable over several orders.
-
-    Parameters
-    ----------
-    measured : Responses
-        Responses with the weight of each line, from 0 to 1 [-].
-
-    Returns
-    -------
-    list of Pole
-        By rising frequency.
-
-    Examples
-    --------
-    >>> f = np.arange(1.0, 301.0)
-    >>> H = 1 / (100.0**2 - f**2 + 2j * 0.02 * 100.0 * f)
-    >>> [(round(pole.frequency, 2), round(pole.damping_ratio, 4))
-    ...  for pole in stable_poles(Responses(f, H[None], np.ones((1, 300))))]
-    [(100.0, 0.02)]
-    """
+def _stable_poles(measured: _Measured) -> list[Pole]:
+    """Return the poles of a response function that are stable over several orders."""
     poles: list[Pole] = []
     for size in LINES:
         new: list[Pole] = []
@@ -330,29 +227,10 @@ def stable_poles(measured: Responses) -> list[Pole]:
     return sorted(poles)
 
 
-def line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the weights of the lines of a fit, which decrease with the root of the response.
-
-    Parameters
-    ----------
-    h : ndarray, shape (..., n), complex
-        Response functions, in any unit.
-    weight : ndarray, shape (..., n)
-        Weight of each line, from 0 to 1 [-].
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        [1/unit^0.5]
-
-    Examples
-    --------
-    >>> line_weights(np.array([4.0 + 0j, 1.0]), np.ones(2)).round(3)
-    array([0.5, 1. ])
-    """
+def _line_weights(h: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the weights of the lines of a fit, which decrease with the root of the response."""
     level = np.abs(h)
-    largest = level.max(axis=-1, keepdims=True)
-    return np.asarray(weight / np.sqrt(np.maximum(level, _TINY * largest)))
+    return np.asarray(weight / np.sqrt(np.maximum(level, _TINY * level.max())))
 
 
 def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]]:
@@ -369,26 +247,22 @@ def _bands(f: NDArray[np.float64], size: int) -> list[tuple[slice, float, float]
     ]
 
 
-def _lscf(measured: Responses) -> list[list[tuple[float, float]]]:
+def _lscf(measured: _Measured) -> list[list[tuple[float, float]]]:
     """Return frequencies and damping ratios of the poles of each order."""
     f, h, weight = measured
     duration = 0.5 / (f[-1] - f[0])
     largest = min(ORDERS[-1], f.size // 2)
     z = np.exp(-2j * np.pi * np.outer(f - f[0], duration * np.arange(largest + 1)))
-    sums = []
-    for one, trust in zip(h, weight, strict=True):
-        x = line_weights(one, trust)[:, None] * z
-        y = -one[:, None] * x
-        sums.append((x.conj().T @ x, x.conj().T @ y, y.conj().T @ y))
+    x = _line_weights(h, weight)[:, None] * z
+    y = -h[:, None] * x
+    xx, xy, yy = x.conj().T @ x, x.conj().T @ y, y.conj().T @ y
     result = []
     for order in ORDERS:
         if order > largest:
             break
         n = order + 1
-        reduced = sum(
-            t[:n, :n] - s[:n, :n].conj().T @ np.linalg.lstsq(r[:n, :n], s[:n, :n], rcond=None)[0]
-            for r, s, t in sums
-        )
+        numerator = np.linalg.lstsq(xx[:n, :n], xy[:n, :n], rcond=None)[0]
+        reduced = yy[:n, :n] - xy[:n, :n].conj().T @ numerator
         # With the highest coefficient equal to one, poles that fit noise become unstable.
         a = np.ones(n, dtype=np.complex128)
         a[:-1] = np.linalg.lstsq(reduced[:-1, :-1], -reduced[:-1, -1], rcond=None)[0]
@@ -450,25 +324,25 @@ def _merged(poles: list[Pole], new: list[Pole]) -> list[Pole]:
 
 
 def fit_modes(
-    frequency: ArrayLike,
-    responses: ArrayLike,
+    frequency: NDArray[np.float64],
+    response: NDArray[np.complex128],
     *,
     low: float,
     high: float,
-    coherence: ArrayLike | None = None,
+    coherence: NDArray[np.float64] | None = None,
 ) -> Modes:
-    """Fit modes to response functions between two frequencies.
+    """Fit modes to a response function between two frequencies.
 
     Parameters
     ----------
-    frequency : array_like, shape (n,)
+    frequency : ndarray, shape (n,)
         [Hz], rising.
-    responses : array_like, shape (n,) or (n_responses, n), complex
-        For one input, in any unit.
+    response : ndarray, shape (n,), complex
+        In any unit.
     low, high : float
         Limits of the band [Hz].
-    coherence : array_like, shape of `responses`, optional
-        Weights the lines.
+    coherence : ndarray, shape (n,), optional
+        Weights the lines [-].
 
     Returns
     -------
@@ -488,11 +362,9 @@ def fit_modes(
     >>> modes.frequency.round(2), modes.damping_ratio.round(4)
     (array([100., 300.]), array([0.02, 0.01]))
     """
-    f = np.asarray(frequency, dtype=np.float64)
-    h = np.atleast_2d(np.asarray(responses, dtype=np.complex128))
-    weight = np.ones(h.shape) if coherence is None else np.atleast_2d(np.asarray(coherence, float))
-    inside = (f >= low) & (f <= high) & (f > 0.0)
-    f, h, weight = f[inside], h[:, inside], weight[:, inside]
+    inside = (frequency >= low) & (frequency <= high) & (frequency > 0.0)
+    weight = np.ones(frequency.size) if coherence is None else coherence
+    f, h, weight = frequency[inside], response[inside], weight[inside]
     if f.size < FEWEST_LINES:
         raise ParameterError(
             f"{f.size} lines lie between {low:g} and {high:g} Hz; modes need {FEWEST_LINES} or more"
@@ -501,8 +373,8 @@ def fit_modes(
     with threadpool_limits(limits=1, user_api="blas"):
         edge = EDGE * float(f[1] - f[0])
         first, last = float(f[0]) + edge, float(f[-1]) - edge
-        measured = Responses(f, h, line_weights(h, weight))
-        poles = stable_poles(Responses(f, h, weight))
+        measured = _Measured(f, h, _line_weights(h, weight))
+        poles = _stable_poles(_Measured(f, h, weight))
         for sweep in range(SWEEPS + 1):
             within = [pole for pole in poles if first < pole.frequency < last]
             modes = _pruned(_merged([], within), measured)  # of doubles the most stable one
@@ -511,11 +383,11 @@ def fit_modes(
         return modes
 
 
-def _pruned(poles: list[Pole], measured: Responses) -> Modes:
-    """Return the modes of the poles that are visible in a response."""
+def _pruned(poles: list[Pole], measured: _Measured) -> Modes:
+    """Return the modes of the poles that are visible in the response."""
     poles = sorted(poles)
     while True:
-        modes = modes_of_poles(poles, measured)
+        modes = _modes_of_poles(poles, measured)
         share = _share(modes, measured)
         if share.size == 0 or share.min() >= NEGLIGIBLE:
             return modes
@@ -524,7 +396,7 @@ def _pruned(poles: list[Pole], measured: Responses) -> Modes:
         poles = [pole for pole, its in zip(poles, share, strict=True) if its > limit]
 
 
-def _refined(modes: Modes, measured: Responses) -> list[Pole]:
+def _refined(modes: Modes, measured: _Measured) -> list[Pole]:
     """Return the poles after Gauss-Newton steps, a few neighbours at a time."""
     f, poles = measured.f, _poles_of(modes)
     refined: list[Pole] = []
@@ -553,12 +425,12 @@ def _groups(frequency: NDArray[np.float64]) -> list[slice]:
     return [slice(a, b) for a, b in itertools.pairwise(limits) if b > a]
 
 
-def _moved(poles: list[Pole], measured: Responses) -> list[Pole]:
+def _moved(poles: list[Pole], measured: _Measured) -> list[Pole]:
     """Return the poles after as many steps as reduce the misfit."""
-    modes = modes_of_poles(poles, measured)
+    modes = _modes_of_poles(poles, measured)
     error = _misfit(modes, measured)
     for _ in range(MOST_STEPS):
-        new = modes_of_poles(_stepped(modes, measured), measured)
+        new = _modes_of_poles(_stepped(modes, measured), measured)
         new_error = _misfit(new, measured)
         if new_error >= error:
             break
@@ -573,28 +445,24 @@ def _poles_of(modes: Modes) -> list[Pole]:
     return [Pole(*of) for of in zip(*(each.tolist() for each in values), strict=True)]
 
 
-def _stepped(modes: Modes, measured: Responses) -> list[Pole]:
+def _stepped(modes: Modes, measured: _Measured) -> list[Pole]:
     """Return the poles after one step, each moved by at most half its width."""
     n, s = modes.frequency.size, 2j * np.pi * measured.f
     poles = modes.poles
     here = 1 / (s - poles[:, None]) ** 2
     there = 1 / (s - poles.conj()[:, None]) ** 2
-    basis = modal_basis(poles, measured.f, modes.highest)
-    model = modes.response(measured.f)
-    size = 2 * n
-    matrix, right = np.zeros((size, size)), np.zeros(size)
-    for row, (one, w) in enumerate(zip(measured.h, measured.weight, strict=True)):
-        turned = modes.residues[row][:, None]
-        a, b = turned * here, turned.conj() * there
-        moves = np.vstack([a + b, 1j * (a - b)]) * w
-        other = basis * w
-        left = (one - model[row]) * w
-        # Project out the part that residues can fit alone.
-        solved = least_squares(other, np.vstack([moves, left]))
-        rest = real_and_imaginary(np.vstack([moves, left])) - solved @ real_and_imaginary(other)
-        gram = rest @ rest.T
-        matrix += gram[:size, :size]
-        right += gram[:size, size]
+    basis = _modal_basis(poles, measured.f, modes.highest)
+    weight = measured.weight
+    turned = modes.residues[:, None]
+    a, b = turned * here, turned.conj() * there
+    left = measured.h - modes.response(measured.f)
+    moves = np.vstack([a + b, 1j * (a - b), left]) * weight
+    # Project out the part that residues can fit alone.
+    other = basis * weight
+    solved = _least_squares(other, moves)
+    rest = _real_and_imaginary(moves) - solved @ _real_and_imaginary(other)
+    gram = rest @ rest.T
+    matrix, right = gram[:-1, :-1], gram[:-1, -1]
     norm = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     step = np.linalg.lstsq(matrix / np.outer(norm, norm), right / norm, rcond=1e-10)[0] / norm
     move = step[:n] + 1j * step[n:]
@@ -606,17 +474,18 @@ def _stepped(modes: Modes, measured: Responses) -> list[Pole]:
     return _poles_of(replace(modes, frequency=natural / (2 * np.pi), damping_ratio=ratio))
 
 
-def _misfit(modes: Modes, measured: Responses) -> float:
+def _misfit(modes: Modes, measured: _Measured) -> float:
     off = np.abs(measured.h - modes.response(measured.f))
     return float(np.sum((measured.weight * off) ** 2))
 
 
-def _share(modes: Modes, measured: Responses) -> NDArray[np.float64]:
-    """Return the largest peak of each mode relative to the responses within its width."""
+def _share(modes: Modes, measured: _Measured) -> NDArray[np.float64]:
+    """Return the peak of each mode relative to the response within its width."""
     f, h, _ = measured
-    shares = np.empty(modes.frequency.size)
-    for r, (frequency, ratio) in enumerate(zip(modes.frequency, modes.damping_ratio, strict=True)):
-        peak = np.abs(modes.residues[:, r]) / (2 * np.pi * frequency * ratio)
-        near = np.abs(f - frequency) <= max(ratio * frequency, f[1] - f[0])
-        shares[r] = float(np.max(peak / np.abs(h[:, near]).max(axis=1)))
-    return shares
+    half_widths = modes.damping_ratio * modes.frequency
+    peaks = np.abs(modes.residues) / (2 * np.pi * half_widths)
+    around = [
+        np.abs(h[np.abs(f - frequency) <= max(half_width, f[1] - f[0])]).max()
+        for frequency, half_width in zip(modes.frequency, half_widths, strict=True)
+    ]
+    return np.asarray(peaks / np.array(around))

@@ -299,7 +299,7 @@ def measured_rows(job: Job, segments: Sequence[Correction], before: Sequence[Row
     return measured
 
 
-def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
+def full_scale_of(rows: Sequence[Row]) -> float | None:
     """Return the full-scale sound pressure [Pa] implied by the levels of rows.
 
     Parameters
@@ -309,8 +309,8 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
 
     Returns
     -------
-    float or tuple of float or None
-        One value per track [Pa]; None if the levels do not determine it.
+    float or None
+        [Pa]; None if the levels do not determine it.
 
     Examples
     --------
@@ -319,13 +319,8 @@ def full_scale_of(rows: Sequence[Row]) -> float | tuple[float, ...] | None:
     >>> full_scale_of([{"level_db": None, "level_dbfs": -3.0}]) is None
     True
     """
-    by_track: dict[str, float] = {}
     for row in rows:
         level, level_dbfs = row.get("level_db"), row.get("level_dbfs")
         if isinstance(level, float) and isinstance(level_dbfs, float):
-            by_track[track(row)] = REFERENCE_PRESSURE * 10.0 ** ((level - level_dbfs) / 20.0)
-    if set(by_track) == {"all"}:
-        return by_track["all"]
-    numbers = [str(number) for number in range(1, len(by_track) + 1)]
-    known = by_track and set(by_track) == set(numbers)
-    return tuple(by_track[number] for number in numbers) if known else None
+            return REFERENCE_PRESSURE * 10.0 ** ((level - level_dbfs) / 20.0)
+    return None

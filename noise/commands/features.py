@@ -5,15 +5,10 @@ from __future__ import annotations
 from argparse import Namespace
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from noise.base.progress import note
 from noise.commands.batch import BATCH, run_batch
 from noise.commands.options import CALIBRATION, full_scale_of
-
-if TYPE_CHECKING:
-    from noise.recordings.interpretation import PascalPerFullScale
-
 
 OPTIONS = (*BATCH, *CALIBRATION)
 
@@ -32,11 +27,11 @@ class FeatureExtraction:
 
     Parameters
     ----------
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not state it.
     """
 
-    full_scale: PascalPerFullScale | None = None
+    full_scale: float | None = None
 
     doing = "analysing"
 

@@ -205,13 +205,12 @@ def _mode_table(modes: Modes, transfer: TransferFunction) -> dict[str, NDArray[A
     """Return the columns of the table of modes."""
     import numpy as np
 
-    (residues,) = modes.residues
     return {
         "frequency_hz": modes.frequency,
         "damping_ratio": modes.damping_ratio,
-        "residue_real": residues.real,
-        "residue_imag": residues.imag,
-        "peak": np.abs(residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
+        "residue_real": modes.residues.real,
+        "residue_imag": modes.residues.imag,
+        "peak": np.abs(modes.residues) / (2 * np.pi * modes.frequency * modes.damping_ratio),
         "coherence": _coherence(modes, transfer),
         "orders": modes.orders,
     }

@@ -22,7 +22,6 @@ from noise.base.progress import note, say
 
 if TYPE_CHECKING:
     from models.rig import Rig
-    from noise.recordings.interpretation import PascalPerFullScale
 
 
 def number_or_none(text: str) -> float | None:
@@ -300,7 +299,7 @@ CALIBRATION = (
 """Calibration of plain sound files; see `full_scale_of`."""
 
 
-def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
+def full_scale_of(options: argparse.Namespace) -> float | None:
     """Return the pressure of a full-scale sample [Pa] from the options of `CALIBRATION`.
 
     Raises
@@ -325,14 +324,12 @@ def full_scale_of(options: argparse.Namespace) -> PascalPerFullScale | None:
     from noise.recordings.calibrator import read_calibrator
 
     with naming("--calibrator ", ParameterError):
-        tones = read_calibrator(options.calibrator, options.level)
-    for tone in tones:
-        say(
-            f"{options.calibrator.name}: {options.level:g} dB at {tone.frequency:.4g} Hz make full "
-            f"scale {tone.full_scale:.4g} Pa"
-        )
-    values = tuple(tone.full_scale for tone in tones)
-    return values[0] if len(values) == 1 else values
+        tone = read_calibrator(options.calibrator, options.level)
+    say(
+        f"{options.calibrator.name}: {options.level:g} dB at {tone.frequency:.4g} Hz make full "
+        f"scale {tone.full_scale:.4g} Pa"
+    )
+    return tone.full_scale
 
 
 _LEAST_LEVEL, _MOST_LEVEL = 60.0, 170.0

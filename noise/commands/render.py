@@ -34,7 +34,6 @@ from noise.commands.options import (
 
 if TYPE_CHECKING:
     from noise.audio.render import Measured, Part
-    from noise.recordings.interpretation import PascalPerFullScale
 
 _LOWEST, _NARROWEST = 1.0, 1.01  # lower end [Hz], and upper over lower end, for stable filters
 
@@ -160,7 +159,7 @@ def _is_condition(text: str) -> bool:
     return text.lstrip().startswith("-")
 
 
-def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[_Source]:
+def _recorded(path: Path, full_scale: float | None) -> list[_Source]:
     """Return the sources of a recording or a folder."""
     from noise.recordings import find_recordings
 
@@ -173,7 +172,7 @@ def _recorded(path: Path, full_scale: PascalPerFullScale | None) -> list[_Source
     ]
 
 
-def _read(path: Path, full_scale: PascalPerFullScale | None, _: str) -> Recording:
+def _read(path: Path, full_scale: float | None, _: str) -> Recording:
     """Read the pressure of a recording."""
     from noise.audio.sound import pressure_recording
     from noise.recordings.files import open_blocks

@@ -24,14 +24,13 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import Segment, label_recording
 from noise.labels.table import COLUMNS, LabelTable
 from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.interpretation import PascalPerFullScale
 
 
 def label(
     paths: str | Path | Sequence[str | Path],
     *,
     classifier: str | Path | None = None,
-    full_scale: PascalPerFullScale | None = None,
+    full_scale: float | None = None,
     surroundings: str | None = None,
     out: str | Path | None = None,
     fresh: bool = False,
@@ -45,7 +44,7 @@ def label(
         Recordings, or folders, which are searched recursively.
     classifier : path, optional
         File that ``bushing-noise train`` made; by default the shipped one.
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     surroundings : {"any", "car", "rig"}, optional
         Place of the recording, which decides the expected background sounds; by default ``rig`` if
@@ -125,7 +124,7 @@ class Labelling:
     ----------
     classifier : Path, optional
         File that ``bushing-noise train`` made; by default the shipped one.
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
     sensitivity : float
         Factor on the odds of a noise [-].
@@ -139,7 +138,7 @@ class Labelling:
     """
 
     classifier: Path | None = None
-    full_scale: PascalPerFullScale | None = None
+    full_scale: float | None = None
     sensitivity: float = 1.0
     surroundings: str | None = None
 

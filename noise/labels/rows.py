@@ -28,7 +28,6 @@ from noise.labels.summary import ASSUMED, assumes_material
 from noise.labels.table import COLUMNS, CONDITIONS, HUMAN
 from noise.labels.windows import has_window_channel, tracks, window_features
 from noise.recordings.files import names_channels, open_blocks
-from noise.recordings.interpretation import PascalPerFullScale
 from noise.recordings.rotation import agrees, as_logged
 
 _SHORTEST = 0.1
@@ -305,7 +304,7 @@ def human_rows(
     path: Path,
     name: str,
     segments: Sequence[tuple[str, float, float, str]],
-    full_scale: PascalPerFullScale | None = None,
+    full_scale: float | None = None,
     new: Sequence[tuple[str, float, float, str]] | None = None,
 ) -> list[dict[str, object]]:
     """Return the rows of the label table for segments drawn by a person.
@@ -317,7 +316,7 @@ def human_rows(
         File as the table names it.
     segments : sequence of (str, float, float, str)
         Channel, start [s], end [s] and label of all segments.
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files without a calibration.
     new : sequence of (str, float, float, str), optional
         Segments [s], as in `segments`, to be measured if the recording is longer than

@@ -44,7 +44,6 @@ from noise.pages.page import page_html, write_page
 from noise.recordings import find_recordings
 from noise.recordings.files import files_below, open_blocks
 from noise.recordings.formats import formats
-from noise.recordings.interpretation import PascalPerFullScale
 
 PAGE = "report.html"
 """Name of the page in a folder."""
@@ -108,7 +107,7 @@ def review(
     out: str | os.PathLike[str] = PAGE,
     *,
     title: str = "Review",
-    full_scale: PascalPerFullScale | None = None,
+    full_scale: float | None = None,
     pascal_per_full_scale: float | None = None,
     seconds: float = 10.0,
     megabytes: float = 40.0,
@@ -124,7 +123,7 @@ def review(
     out : path-like
         The page, or a folder for ``report.html``.
     title : str
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Sound pressure of a full-scale sample of the recordings [Pa]; wins over what they say.
     pascal_per_full_scale : float, optional
         Of the page, for a listening room that is calibrated to it [Pa]; by default what the
@@ -291,7 +290,7 @@ def _read_entry(
     rows: Sequence[Row],
     classifier: Classifier | None,
     longest: float,
-    full_scale: PascalPerFullScale | None,
+    full_scale: float | None,
 ) -> Entry | Refusal:
     """Read the entry of a recording: its labels, and an excerpt of at most `longest` seconds."""
     try:

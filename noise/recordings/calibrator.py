@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,8 @@ _STEP = 2.0**-15
 """Quantisation step of 16-bit samples over full scale [-]."""
 
 
-@dataclass(frozen=True)
-class CalibratorTone:
-    """Tone of a calibrator on one track.
+class CalibratorTone(NamedTuple):
+    """Tone of a calibrator.
 
     Parameters
     ----------
@@ -60,25 +59,25 @@ class CalibratorTone:
     full_scale: float
 
 
-def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[CalibratorTone, ...]:
+def read_calibrator(path: str | os.PathLike[str], level: float) -> CalibratorTone:
     """Read the recording of a calibrator and return the value of full scale.
 
     Parameters
     ----------
     path : path-like
-        Recording of any format; a calibration in it is ignored.
+        Recording of one track in any format; a calibration in it is ignored.
     level : float
         Level of the calibrator [dB re 20 uPa].
 
     Returns
     -------
-    tuple of CalibratorTone
-        Tone of each track.
+    CalibratorTone
 
     Raises
     ------
     RecordingError
-        The file cannot be read, or is not one stable tone; the message states the reason.
+        The file cannot be read, has several tracks, or is not one stable tone; the message states
+        the reason.
     ParameterError
         The level is not finite.
 
@@ -88,8 +87,8 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     >>> tone = 0.1 * np.sin(2.0 * np.pi * 1000.0 * np.arange(48_000) / 48e3)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     soundfile.write(Path(folder) / "tone.wav", tone, 48_000)
-    ...     (track,) = read_calibrator(Path(folder) / "tone.wav", 94.0)
-    >>> round(track.frequency, 2), round(track.full_scale, 2)
+    ...     found = read_calibrator(Path(folder) / "tone.wav", 94.0)
+    >>> round(found.frequency, 2), round(found.full_scale, 2)
     (1000.0, 14.18)
     """
     if not math.isfinite(level):
@@ -97,14 +96,12 @@ def read_calibrator(path: str | os.PathLike[str], level: float) -> tuple[Calibra
     path = Path(path)
     with open_raw(path) as raw:
         samples = raw.whole()
+    with naming(f"{path}: is no calibrator's tone: ", RecordingError):
+        if raw.n_channels > 1:
+            raise ParameterError(f"it has {raw.n_channels} tracks; give one with the tone alone")
+        frequency, amplitude = _tone(samples[0], raw.rate, fractional=raw.fractional)
     pressure = REFERENCE_PRESSURE * 10.0 ** (level / 20.0)
-    tones = []
-    for number, row in enumerate(samples, start=1):
-        where = str(path) if raw.n_channels == 1 else f"{path}: track {number}"
-        with naming(f"{where}: is no calibrator's tone: ", RecordingError):
-            frequency, amplitude = _tone(row, raw.rate, fractional=raw.fractional)
-        tones.append(CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude))
-    return tuple(tones)
+    return CalibratorTone(frequency, pressure * math.sqrt(2.0) / amplitude)
 
 
 def _tone(samples: NDArray[np.float64], rate: float, *, fractional: bool) -> tuple[float, float]:

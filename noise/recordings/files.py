@@ -27,7 +27,7 @@ from models.recording import Recording
 from noise.base.progress import note, readable
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated
-from noise.recordings.interpretation import Metadata, PascalPerFullScale, check_finite, interpret
+from noise.recordings.interpretation import Metadata, check_finite, interpret
 from noise.recordings.rotation import find_turns
 from noise.recordings.sidecar import sidecar_of
 
@@ -44,9 +44,7 @@ _CHUNK = 8 << 20
 _noted: set[str] = set()
 
 
-def read_recording(
-    path: str | os.PathLike[str], *, full_scale: PascalPerFullScale | None = None
-) -> Recording:
+def read_recording(path: str | os.PathLike[str], *, full_scale: float | None = None) -> Recording:
     """Read a recording with the metadata of its sidecar or of the file itself.
 
     Parameters
@@ -55,8 +53,8 @@ def read_recording(
         File of one of the formats of `noise.recordings.formats.formats`. Its sidecar has the same
         stem and the suffix ``.json``. Without a sidecar each track of a sound file is a pressure
         channel, or an acceleration channel if the file of a meter states one.
-    full_scale : float or tuple of float, optional
-        Pressure of a full-scale sample [Pa], for all tracks or for each. It overrides file and
+    full_scale : float, optional
+        Pressure of a full-scale sample [Pa]. It overrides file and
         sidecar, except for samples that are already in a unit.
 
     Returns
@@ -92,7 +90,7 @@ def read_recording(
 
 @contextmanager
 def open_blocks(
-    path: str | os.PathLike[str], *, full_scale: PascalPerFullScale | None = None
+    path: str | os.PathLike[str], *, full_scale: float | None = None
 ) -> Iterator[RecordingBlocks]:
     """Open a recording for reading in blocks; a long file is read only where needed.
 
@@ -101,7 +99,7 @@ def open_blocks(
     Parameters
     ----------
     path : path-like
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Pressure of a full-scale sample [Pa], as for `read_recording`.
 
     Yields

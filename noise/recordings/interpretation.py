@@ -38,9 +38,6 @@ from models.recording import REFERENCE_PRESSURE, Channel
 from noise.recordings.formats import RawRecording
 from noise.recordings.sidecar import Sidecar, find_sidecar, sidecar_of
 
-PascalPerFullScale = float | tuple[float, ...]
-"""Pressure of a full-scale sample [Pa], for all tracks or for each."""
-
 _LARGEST = 1e15
 """Largest sample in any unit. No quantity of a rig is as large, and the squares of larger samples
 overflow in single precision."""
@@ -73,9 +70,7 @@ class Metadata:
     notes: tuple[str, ...] = ()
 
 
-def interpret(
-    path: Path, raw: RawRecording, full_scale: PascalPerFullScale | None = None
-) -> Metadata:
+def interpret(path: Path, raw: RawRecording, full_scale: float | None) -> Metadata:
     """Return the channels, condition and calibration of a file.
 
     Parameters
@@ -83,7 +78,7 @@ def interpret(
     path : Path
         The file; its sidecar lies beside it.
     raw : RawRecording
-    full_scale : float or tuple of float, optional
+    full_scale : float, optional
         Pressure of a full-scale sample [Pa]; see `noise.recordings.read_recording`.
 
     Returns
@@ -106,7 +101,8 @@ def interpret(
     >>> result.channels[0].name, result.channels[0].full_scale, result.calibrated
     ('pressure', 2.0, True)
     """
-    options = _by_track(path, full_scale, raw.n_channels)
+    if full_scale is not None and not 0 < full_scale < math.inf:
+        raise ParameterError(f"full scale is {full_scale!r} Pa, expected a positive number")
     sidecar_path, sidecar = find_sidecar(path), sidecar_of(path)
     n_channels = raw.n_channels
     if sidecar.channels is not None and len(sidecar.channels) != n_channels:
@@ -114,24 +110,8 @@ def interpret(
             f"{sidecar_path}: names {len(sidecar.channels)} channels, {path.name} has {n_channels}"
         )
     notes = [*raw.notes, *filter(None, [sidecar.note])]
-    channels, calibrated = _calibrated(path, raw, sidecar, options, notes)
+    channels, calibrated = _calibrated(path, raw, sidecar, full_scale, notes)
     return Metadata(channels, sidecar.condition, calibrated, tuple(notes))
-
-
-def _by_track(
-    path: Path, full_scale: PascalPerFullScale | None, n_tracks: int
-) -> tuple[float | None, ...]:
-    """Return the caller's full scale of each track."""
-    values = full_scale if isinstance(full_scale, tuple) else (full_scale,) * n_tracks
-    for value in values:
-        if value is not None and not 0 < value < math.inf:
-            raise ParameterError(f"full scale is {value!r} Pa, expected a positive number")
-    if len(values) != n_tracks:
-        raise RecordingError(
-            f"{path}: has {n_tracks} tracks, and full scale is given for {len(values)}; record the "
-            "calibrator on all tracks, or on one"
-        )
-    return values
 
 
 def check_finite(
@@ -173,7 +153,7 @@ def _calibrated(
     path: Path,
     raw: RawRecording,
     sidecar: Sidecar,
-    options: tuple[float | None, ...],
+    full_scale: float | None,
     notes: list[str],
 ) -> tuple[tuple[Channel, ...], bool]:
     """Return channels with the value of full scale, and whether all of them have one."""
@@ -181,25 +161,25 @@ def _calibrated(
     stated = next(filter(None, map(stated_full_scale, texts)), None)
     channels = tuple(one.channel for one in sidecar.channels or ()) or raw.channels or ()
     if not channels:
-        kind = "pressure" if stated is None or any(options) else stated.kind
+        kind = "pressure" if stated is None or full_scale is not None else stated.kind
         numbers = range(1, raw.n_channels + 1)
         channels = tuple(Channel(kind if i == 1 else f"{kind}_{i}") for i in numbers)
     named = sidecar.channels is not None or raw.channels is not None
     in_units = not raw.fractional and (named or sidecar.calibrated is True)
     scales = [one.scale for one in sidecar.channels or ()] or [None] * len(channels)
     values: list[float | None] = []
-    for channel, scale, option in zip(channels, scales, options, strict=True):
+    for channel, scale in zip(channels, scales, strict=True):
         metered = stated.value if stated and stated.kind == channel.kind else None
         value = scale or (1.0 if in_units else metered)
         value = None if sidecar.calibrated is False else value
-        if channel.kind == "pressure" and option is not None:
+        if channel.kind == "pressure" and full_scale is not None:
             if in_units and value == 1.0:
                 notes.append(
                     f"{channel.name} is in {channel.unit} already; the value of full scale "
                     "(--full-scale, --calibrator) is ignored"
                 )
             else:
-                value = option
+                value = full_scale
         values.append(value)
     known = [value for value in values if value is not None]
     if len(known) < len(values):

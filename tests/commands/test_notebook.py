@@ -44,8 +44,8 @@ def response():
 
 
 def modes():
-    one = np.array([100.0, 150.0]), np.array([0.02, 0.01]), np.array([[-1j, -2j]])
-    return Modes(*one, np.zeros((1, 4)), np.array([9, 8]), 200.0)
+    one = np.array([100.0, 150.0]), np.array([0.02, 0.01]), np.array([-1j, -2j])
+    return Modes(*one, np.zeros(4), np.array([9, 8]), 200.0)
 
 
 def identification():

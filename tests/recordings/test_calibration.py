@@ -183,25 +183,14 @@ def test_the_level_is_right_whatever_the_gain_with_noise_30_db_below_or_none(
     noise = np.random.default_rng(seed).standard_normal(pure.size) * 10 ** (noise_db / 20.0)
     noisy = amplitude * (pure + np.sqrt(0.5) * noise)
     path = written(tmp_path_factory.mktemp("tone"), noisy, rate, "PCM_16")
-    (found,) = read_calibrator(path, level)
+    found = read_calibrator(path, level)
     rms = np.sqrt(0.5) * amplitude * found.full_scale
     assert 20.0 * np.log10(rms / 20e-6) == pytest.approx(level, abs=0.1)
     assert found.frequency == pytest.approx(nominal * (1.0 + off), rel=1e-3)
 
 
-def test_each_track_has_its_own(tmp_path):
-    path = written(tmp_path, np.stack([tone(amplitude=0.1), tone(amplitude=0.2)], axis=1))
-    first, second = read_calibrator(path, 94.0)
-    assert first.full_scale == pytest.approx(2.0 * second.full_scale, rel=1e-3)
-    stereo = sound(tmp_path / "run.wav", np.full((100, 2), 0.5))
-    run = read_recording(stereo, full_scale=(first.full_scale, second.full_scale))
-    assert run["pressure"][0] == pytest.approx(2.0 * run["pressure_2"][0], rel=1e-3)
-    with pytest.raises(RecordingError, match="has 1 tracks, and full scale is given for 2"):
-        read_recording(sound(tmp_path / "mono.wav"), full_scale=(1.0, 2.0))
-
-
 def test_a_tone_in_float_samples_counts_as_they_are(tmp_path):
-    (found,) = read_calibrator(written(tmp_path, tone(amplitude=3.0), subtype="FLOAT"), 94.0)
+    found = read_calibrator(written(tmp_path, tone(amplitude=3.0), subtype="FLOAT"), 94.0)
     assert found.full_scale == pytest.approx(1.0024 * np.sqrt(2.0) / 3.0, rel=1e-3)
 
 
@@ -217,7 +206,7 @@ SPOILT = {
     "harmonics": (tone() + tone(2000.0, 0.006), "are 6.0% of the tone, more than the allowed 4%"),
     "hum": (tone() + tone(50.0, 0.03), "are 30.0% of the tone"),
     "hiss": (tone() + HISS, "of the tone, more than the allowed 4%"),
-    "of a track": (np.stack([tone(), tone(440.0)], axis=1), "track 2: is no calibrator's tone"),
+    "of a track": (np.stack([tone(), tone(440.0)], axis=1), "it has 2 tracks"),
 }
 
 
