@@ -12,7 +12,6 @@ from .kernels.levels import (
     a_weighting as a_weighting,
     band_levels as band_levels,
     band_power as band_power,
-    fast_levels as fast_levels,
     sound_levels as sound_levels,
     third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,

@@ -539,7 +539,7 @@ def _continued(read: Read, n: int, first: int, last: int, margin: int) -> NDArra
 def fast_level_pieces(
     read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
 ) -> Iterator[NDArray[np.float64]]:
-    """Yield the A-weighted `fast_levels` of a sound that is read in pieces.
+    """Yield the A-weighted levels with the time weighting F of a sound that is read in pieces.
 
     Parameters
     ----------
@@ -558,58 +558,10 @@ def fast_level_pieces(
     >>> round(float(max(piece.max() for piece in pieces)))
     94
     """
-    state = np.zeros(1)
-    for piece, scale in _weighted_pieces(read, n, rate):
-        smoothed, state = _smoothed((piece * scale) ** 2, rate, state)
-        yield band_levels(smoothed, reference)
-
-
-def fast_levels(
-    signal: ArrayLike,
-    rate: float,
-    edges: NDArray[np.int64],
-    *,
-    reference: float = REFERENCE_PRESSURE,
-) -> NDArray[np.float64]:
-    """Return the largest level with the time weighting F in each cell of time.
-
-    Parameters
-    ----------
-    signal : array_like, shape (n_samples,)
-        Signal, already frequency-weighted if desired.
-    rate : float
-        Sampling rate [Hz].
-    edges : ndarray of int, shape (n_cells + 1,)
-        Samples at which the cells begin, rising, and the end of the last.
-    reference : float
-        [unit]
-
-    Returns
-    -------
-    ndarray, shape (n_cells,)
-        [dB], for a meter at rest before the first sample.
-
-    Raises
-    ------
-    ParameterError
-        The signal cannot be analysed.
-
-    Examples
-    --------
-    >>> burst = np.sqrt(2) * np.sin(2 * np.pi * 4000 * np.arange(9600) / 48e3)
-    >>> fast_levels(burst, 48e3, np.array([0, 4800, 9600]), reference=1.0).round(1).tolist()
-    [-2.6, -1.0]
-    """
-    smoothed, _ = _smoothed(checked_signal(signal, rate) ** 2, rate, np.zeros(1))
-    return band_levels(np.maximum.reduceat(smoothed[: edges[-1]], edges[:-1]), reference)
-
-
-def _smoothed(
-    power: NDArray[np.floating], rate: float, state: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Apply the time weighting F to a squared sound; return it and the meter's final state."""
     from scipy.signal import lfilter
 
-    decay = _smoothing(rate)
-    smoothed, state = lfilter([1.0 - decay], [1.0, -decay], power, zi=state)
-    return smoothed, state
+    decay, state = _smoothing(rate), np.zeros(1)
+    for piece, scale in _weighted_pieces(read, n, rate):
+        power = (piece * scale) ** 2
+        smoothed, state = lfilter([1.0 - decay], [1.0, -decay], power, zi=state)
+        yield band_levels(smoothed, reference)

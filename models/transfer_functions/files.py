@@ -281,11 +281,12 @@ def write_transfer_function_csv(file: TextIO, transfer: TransferFunction) -> Non
     1.0,0.0,1.0,
     2.0,0.0,2.0,
     """
-    columns = transfer.columns
-    columns.setdefault("coherence", [""] * transfer.frequencies.size)
+    f, response, coherence = transfer.frequencies, transfer.response, transfer.coherence
+    values = [""] * f.size if coherence is None else coherence.tolist()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values(), strict=True))
+    writer.writerow(("frequency_hz", "real", "imag", "coherence"))
+    lines = zip(f.tolist(), response.real.tolist(), response.imag.tolist(), values, strict=True)
+    writer.writerows(lines)
 
 
 def _read_npz(path: Path) -> TransferFunction:

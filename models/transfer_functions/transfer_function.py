@@ -7,17 +7,12 @@ one can be trusted where its coherence is high.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.show import short_repr
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from pandas import DataFrame
 
 
 @short_repr
@@ -58,11 +53,6 @@ class TransferFunction:
         """Mean spacing of the lines [Hz]."""
         return float((self.frequencies[-1] - self.frequencies[0]) / (self.frequencies.size - 1))
 
-    @property
-    def unit(self) -> str:
-        """Unit of the response for titles; ``-`` for a ratio."""
-        return f"{self.output_unit} per {self.input_unit}" if self.input_unit else "-"
-
     def at(
         self, frequencies: NDArray[np.float64], *, falls_below: bool = False
     ) -> NDArray[np.complex128]:
@@ -94,81 +84,6 @@ class TransferFunction:
             first = self.frequencies[0]
             response = response * np.minimum(frequencies / max(first, 1e-9), 1.0) ** 2
         return np.asarray(response)
-
-    @property
-    def columns(self) -> dict[str, list[Any]]:
-        """Columns of the CSV file: frequency [Hz], real and imaginary part, coherence if known."""
-        columns = {
-            "frequency_hz": self.frequencies,
-            "real": self.response.real,
-            "imag": self.response.imag,
-        }
-        if self.coherence is not None:
-            columns["coherence"] = self.coherence
-        return {key: values.tolist() for key, values in columns.items()}
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the magnitude over frequency; lines of a coherence below a half are pale.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw into; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Examples
-        --------
-        >>> from matplotlib.figure import Figure
-        >>> f = np.array([1.0, 2.0])
-        >>> TransferFunction(f, 1j * f, None, "N", "m/s^2").plot(Figure().subplots()).get_ylabel()
-        'Magnitude [m/s^2 per N]'
-        """
-        from models.drawing import BLUE, GREY, axes_or_new, frequency_axis
-
-        shown = self.frequencies > 0.0
-        f, size = self.frequencies[shown], np.abs(self.response[shown])
-        with axes_or_new(ax) as axes:
-            name = self.name
-            if self.coherence is not None:
-                axes.plot(f, size, color=GREY, alpha=0.5, linewidth=0.8)
-                size = np.where(self.coherence[shown] >= LEAST_COHERENCE, size, np.nan)
-                name += f", coherence of {LEAST_COHERENCE:g} or more"
-            axes.plot(f, size, color=BLUE, label=name)
-            axes.set_yscale("log")
-            frequency_axis(axes, float(f[0]), float(f[-1]))
-            axes.set_xlabel("Frequency [Hz]")
-            axes.set_ylabel(f"Magnitude [{self.unit}]")
-            axes.legend(loc="best")
-        return axes
-
-    def to_pandas(self) -> DataFrame:
-        """Return a pandas data frame with one row per line and the columns of the CSV file.
-
-        Returns
-        -------
-        pandas.DataFrame
-            ``frequency_hz``, ``real``, ``imag``, and ``coherence`` if known.
-
-        Raises
-        ------
-        ParameterError
-            pandas is not installed.
-
-        Examples
-        --------
-        >>> from importlib.util import find_spec
-        >>> f = np.array([1.0, 2.0])
-        >>> if find_spec("pandas"):
-        ...     assert TransferFunction(f, 1j * f).to_pandas()["imag"].tolist() == [1.0, 2.0]
-        """
-        from models.show import data_frame
-
-        columns = self.columns
-        lines = zip(*columns.values(), strict=True)
-        return data_frame([*columns], [dict(zip(columns, line, strict=True)) for line in lines])
 
 
 LEAST_COHERENCE = 0.5
@@ -203,28 +118,6 @@ def trusted_band(transfer: TransferFunction) -> tuple[float, float]:
         return 0.0, 0.0
     lines = f[usable]
     return float(lines[0]), float(lines[-1])
-
-
-def bands_below(transfer: TransferFunction, least: float) -> list[tuple[float, float]]:
-    """Return the bands whose lines have a coherence below `least`, first to last line [Hz].
-
-    Lines nearer to each other than 6 % form one band. The line at 0 Hz does not count.
-
-    Examples
-    --------
-    >>> f = np.arange(0.0, 101.0)
-    >>> transfer = TransferFunction(f, 1j * f, np.where(f < 20, 0.1, 0.99))
-    >>> bands_below(transfer, 0.8)
-    [(1.0, 19.0)]
-    """
-    if transfer.coherence is None:
-        return []
-    lines = transfer.frequencies[(transfer.coherence < least) & (transfer.frequencies > 0.0)]
-    gaps = np.flatnonzero(
-        (lines[1:] > _SMOOTHING * lines[:-1]) & (np.diff(lines) > 1.5 * transfer.spacing)
-    )
-    parts = np.split(lines, gaps + 1) if lines.size else []
-    return [(float(part[0]), float(part[-1])) for part in parts]
 
 
 def check_band(transfer: TransferFunction, low: float, high: float) -> None:

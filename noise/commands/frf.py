@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from models.transfer_functions.transfer_function import TransferFunction
 
 
-_DEFAULT_COHERENCE = 0.8
-_MOST_BANDS = 8
+_COHERENCE = 0.8
+"""Coherence below which a line or a mode is not to be trusted [-]."""
+
 _TRUNCATION = 0.02  # remaining response at the end of a hit, relative; peaks are that much too low
 
 
@@ -46,7 +47,6 @@ OPTIONS = (
     Option("--arm M", number(above=0.0, most=100.0)),
     Option("--response NAME", _channel),
     Option("--band LOW..HIGH", band),
-    Option("--coherence C", number(least=0.0, most=1.0), _DEFAULT_COHERENCE),
 )
 
 
@@ -71,7 +71,7 @@ def run(options: Namespace) -> int:
         output_unit=unit,
         name=f"response of {counted(len(hits), 'hit')}",
     )
-    _note_coherence(transfer, options.coherence)
+    _note_coherence(transfer)
     modes = None
     if options.modes is not None:
         from features.modal.modal_fit import fit_modes
@@ -83,7 +83,7 @@ def run(options: Namespace) -> int:
             transfer.frequencies, transfer.response,
             low=low, high=high, coherence=transfer.coherence,
         )  # fmt: skip
-        modes = _trusted(modes, transfer, hits, options.coherence)
+        modes = _trusted(modes, transfer, hits)
         count = counted(modes.frequency.size, "mode")
         say(f"{count} between {low:.5g} and {high:.5g} Hz")
     _write(options, transfer, modes)
@@ -133,21 +133,13 @@ def _read(options: Namespace) -> tuple[list[Hit], str, int]:
     return hits, first_unit, refused
 
 
-def _note_coherence(transfer: TransferFunction, least: float) -> None:
-    """Print the bands in which the coherence is too low."""
+def _note_coherence(transfer: TransferFunction) -> None:
+    """Print how much of the response is not to be trusted."""
     if transfer.coherence is None:
         note("a single hit has no coherence; hit at least three times to see what can be trusted")
         return
-    from models.transfer_functions.transfer_function import bands_below
-
-    bands = bands_below(transfer, least)
-    if not bands:
-        say(f"coherence is {least:g} or more throughout")
-        return
-    widest = sorted(sorted(bands, key=lambda band: band[0] - band[1])[:_MOST_BANDS])
-    listed = ", ".join(f"{low:.5g}-{high:.5g}" for low, high in widest)
-    more = ", and narrower ones" * (len(bands) > len(widest))
-    note(f"coherence below {least:g}, not to be trusted: {listed} Hz{more}")
+    low = float((transfer.coherence[1:] < _COHERENCE).mean())
+    note(f"coherence is below {_COHERENCE:g} in {low:.0%} of the lines, which cannot be trusted")
 
 
 def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) -> None:
@@ -170,14 +162,14 @@ def _write(options: Namespace, transfer: TransferFunction, modes: Modes | None) 
     report(*filter(None, (options.out, options.modes)))
 
 
-def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit], least: float) -> Modes:
+def _trusted(modes: Modes, transfer: TransferFunction, hits: list[Hit]) -> Modes:
     """Return the modes at which coherence and force are sufficient."""
     from features.modal.hammer import force_nulls
 
-    coherent = ~(_coherence(modes, transfer) < least)  # the coherence of a single hit is NaN
+    coherent = ~(_coherence(modes, transfer) < _COHERENCE)  # the coherence of a single hit is NaN
     excited = ~force_nulls(hits, modes.frequency, modes.damping_ratio * modes.frequency)
     for trusted, reason in (
-        (coherent, f"the coherence is below {least:g}"),
+        (coherent, f"the coherence is below {_COHERENCE:g}"),
         (excited | ~coherent, "the force has almost no power"),
     ):
         if left_out := int((~trusted).sum()):

@@ -81,13 +81,13 @@ def test_modes_of_the_structure_are_found(hits):
 
 def test_a_call_says_what_it_averages_and_how_far_that_is_to_be_trusted(hits, capsys):
     np.save("short.npy", np.load(hits[0])[:, :12000])
-    assert main(["frf", *hits, "short.npy", "--coherence", "1"]) == 0
+    assert main(["frf", *hits, "short.npy"]) == 0
     out, err = capsys.readouterr()
     rows = list(csv.DictReader(io.StringIO(out)))
     assert list(rows[0]) == ["frequency_hz", "real", "imag", "coherence"]
     assert len(rows) == 6001
     assert "cut to the shortest, 12000 samples" in err
-    assert "coherence below 1, not to be trusted: " in err
+    assert "coherence is below 0.8 in " in err
     sound = np.stack(hit(np.random.default_rng(4)))
     write_recording("sound", Recording(sound, RATE, (Channel("force"), Channel("pressure_2"))))
     assert main(["frf", "sound.wav", "--response", "pressure_2", "--out", "sound.npz"]) == 0

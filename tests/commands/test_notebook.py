@@ -1,6 +1,5 @@
 """What results are in a notebook: a short print, a data frame of pandas, a picture on axes."""
 
-import io
 import sys
 
 import numpy as np
@@ -11,14 +10,11 @@ import noise
 from features.modal.modal_fit import Modes
 from models.errors import ParameterError
 from models.recording import Channel, Recording
-from models.transfer_functions.files import write_transfer_function_csv
-from models.transfer_functions.transfer_function import TransferFunction
 from noise.identification.outcome import Identification, Number
 from noise.labels.table import COLUMNS
 from tests.helpers.made_diagnoses import one_effect
 
 LONGEST = 500
-FREQUENCY = np.linspace(0.0, 200.0, 401)
 CHANNELS = (Channel("torque"), Channel("pressure"))
 
 
@@ -37,12 +33,6 @@ def label_table():
     return noise.LabelTable([row | {"level_db": 70.0}] * 30)
 
 
-def response():
-    values = 1.0 / (100.0**2 - FREQUENCY**2 + 4j * FREQUENCY)
-    coherence = np.where(FREQUENCY < 20.0, 0.2, 0.99)
-    return TransferFunction(FREQUENCY, values, coherence, "N m", "m/s^2", "hits")
-
-
 def modes():
     one = np.array([100.0, 150.0]), np.array([0.02, 0.01]), np.array([-1j, -2j])
     return Modes(*one, np.zeros(4), np.array([9, 8]), 200.0)
@@ -58,8 +48,8 @@ def sweep():
     return noise.sweep(rig, [1.0, 5.0], support_stiffness=[[2214.0], [noise.FIXED]], seconds=0.01)
 
 
-DRAWN = (recording, run, one_effect, response, sweep)
-ROWS = {label_table: 30, response: 401, sweep: 4,
+DRAWN = (recording, run, one_effect, sweep)
+ROWS = {label_table: 30, sweep: 4,
         identification: 1}  # fmt: skip
 
 
@@ -91,9 +81,6 @@ def test_frames_have_the_columns_of_the_files():
     frame = label_table().to_pandas()
     assert tuple(frame.columns) == COLUMNS
     assert frame["level_db"].mean() == 70.0
-    file = io.StringIO()
-    write_transfer_function_csv(file, response())
-    assert file.getvalue().splitlines()[0].split(",") == [*response().to_pandas().columns]
     frame = sweep().to_pandas()
     assert frame["speed_rad_s"].tolist() == [1.0, 5.0, 1.0, 5.0]
     assert frame["support_stiffness_Nm_rad"].tolist() == [2214.0, 2214.0, "fixed", "fixed"]
