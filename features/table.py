@@ -32,9 +32,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from features.kernels.spectra import weighted_median
 from features.prepared import ACOUSTIC_KINDS, Prepared, prepare
-from models.blocks import Read, RecordingBlocks, reader_of
 from models.errors import ParameterError
-from models.recording import Recording
+from models.recording import Read, Recording, RecordingBlocks, reader_of
 from models.show import short_repr
 
 KINDS = (*ACOUSTIC_KINDS, "torque")

@@ -26,10 +26,9 @@ from scipy import fft
 
 from features.kernels.conditioning import checked_signal
 from features.kernels.spectra import Spectrum, welch
-from models.blocks import Read
 from models.compilation import COMPILED
 from models.errors import ParameterError
-from models.recording import REFERENCE_PRESSURE
+from models.recording import REFERENCE_PRESSURE, Read
 from models.show import short_repr
 
 REFERENCES = {"pressure": REFERENCE_PRESSURE, "acceleration": 1e-6, "force": 1e-6}

@@ -23,9 +23,8 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from features.kernels.levels import REFERENCES, fast_level_pieces, sound_levels
-from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel
+from models.recording import Channel, RecordingBlocks
 from noise.app.requests import number
 from noise.audio.sound import playable
 from noise.audio.spectrogram import (

@@ -13,9 +13,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
-from models.recording import Channel, Recording
+from models.recording import Channel, Recording, RecordingBlocks
 
 RATE = 48_000
 """Sampling rate of rendered sound [Hz]."""

@@ -35,7 +35,7 @@ from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import QuantileForest
 
 if TYPE_CHECKING:
-    from models.blocks import RecordingBlocks
+    from models.recording import RecordingBlocks
 
 _NARROWER = 0.8
 """Maximum width of a reported interval, as a share of that of the population [-]; assumed."""
@@ -267,7 +267,7 @@ def infer_stretch(
     >>> from models.condition import Condition
     >>> from models.rig_file import load_material_rig
     >>> from noise.inference import load_inference
-    >>> from models.blocks import RecordingBlocks
+    >>> from models.recording import RecordingBlocks
     >>> from sim.run import simulate
     >>> run = simulate(load_material_rig("fluorocarbon"), 1.0, interference=0.381e-3)
     >>> blocks = RecordingBlocks.of(run.recording)

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.levels import weighted_levels
-from models.blocks import RecordingBlocks
-from models.recording import REFERENCE_PRESSURE
+from models.recording import REFERENCE_PRESSURE, RecordingBlocks
 from noise.base.labels import NAMED
 
 if TYPE_CHECKING:

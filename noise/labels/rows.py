@@ -17,9 +17,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.condition import Condition
-from models.recording import Recording
+from models.recording import Recording, RecordingBlocks
 from noise.base.labels import NAMED
 from noise.inference import Inference, Interval
 from noise.labels.levels import with_levels
@@ -225,7 +224,7 @@ def segment_speed(blocks: RecordingBlocks, start: float, end: float) -> float | 
     --------
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
-    >>> from models.blocks import RecordingBlocks
+    >>> from models.recording import RecordingBlocks
     >>> angle = 4.999989 * np.arange(2000)[None] / 1e3
     >>> run = Recording(angle, 1e3, (Channel("angle"),), Condition(speed=5.0))
     >>> segment_speed(RecordingBlocks.of(run), 0.0, 2.0)
@@ -248,7 +247,7 @@ def speed_remark(blocks: RecordingBlocks, speed: float | None) -> str:
     --------
     >>> from models.condition import Condition
     >>> from models.recording import Channel, Recording
-    >>> from models.blocks import RecordingBlocks
+    >>> from models.recording import RecordingBlocks
     >>> run = Recording(np.zeros((1, 9)), 1e3, (Channel("angle"),), Condition(speed=5.0))
     >>> speed_remark(RecordingBlocks.of(run), 10.0)
     'speed 10 rad/s is that of the channel angle; 5 was logged'

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from features.prepared import ACOUSTIC_KINDS
 from features.table import KINDS, WINDOW_FEATURES
 from features.windows.table import HOP, LENGTH
-from models.blocks import RecordingBlocks
-from models.recording import REFERENCE_PRESSURE, Recording
+from models.recording import REFERENCE_PRESSURE, Recording, RecordingBlocks
 from models.show import short_repr
 from noise.base.labels import LABELS
 from noise.classifier import Classifier

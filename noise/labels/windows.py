@@ -26,8 +26,8 @@ from features.windows.table import (
     describe_windows,
     window_count,
 )
-from models.blocks import RecordingBlocks
 from models.errors import ParameterError
+from models.recording import RecordingBlocks
 from noise.classifier.model import Classifier
 
 FEATURE_NAMES = (
@@ -130,7 +130,7 @@ def window_features(
     Examples
     --------
     >>> from models.recording import Channel, Recording
-    >>> from models.blocks import RecordingBlocks
+    >>> from models.recording import RecordingBlocks
     >>> hiss = np.random.default_rng(0).normal(size=(1, 48_000))
     >>> found = window_features(RecordingBlocks.of(Recording(hiss, 48e3, (Channel("pressure"),))))
     >>> found.features.shape == (3, len(FEATURE_NAMES)), found.frames.shape[0]

@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError, ParameterError
-from models.recording import Recording
+from models.recording import Recording, RecordingBlocks
 from models.show import short_repr
 from noise.audio.sound import LOWEST_AUDIBLE_RATE, audible
 from noise.base.progress import readable, track

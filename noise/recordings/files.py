@@ -20,10 +20,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import reading, refusing
-from models.recording import Recording
+from models.recording import Recording, RecordingBlocks
 from noise.base.progress import note, readable
 from noise.recordings.formats import RawRecording, check_rate, formats
 from noise.recordings.formats.isolated import open_isolated

@@ -10,9 +10,8 @@ import pytest
 from joblib import Parallel, delayed
 from sklearn.ensemble import RandomForestRegressor
 
-from models.blocks import RecordingBlocks
 from models.condition import FIXED, Condition
-from models.recording import Channel, Recording
+from models.recording import Channel, Recording, RecordingBlocks
 from models.rig_file import load_material_rig
 from noise.base.tables import write_table
 from noise.classifier import LABELS

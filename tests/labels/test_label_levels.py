@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from models.blocks import RecordingBlocks
-from models.recording import Channel, Recording
+from models.recording import Channel, Recording, RecordingBlocks
 from models.rig_file import load_material_rig
 from noise.audio.assessment import assess
 from noise.classifier import load_classifier

@@ -11,8 +11,7 @@ from scipy.signal import resample_poly
 
 from features.table import WINDOW_FEATURES
 from features.windows.table import WINDOW_NAMES, window_count
-from models.blocks import RecordingBlocks
-from models.recording import Channel, Recording
+from models.recording import Channel, Recording, RecordingBlocks
 from noise.labels.levels import cell_edges, rms_level
 from noise.labels.segmentation import change_points, viterbi_path
 from noise.labels.windows import FEATURE_NAMES, window_features

@@ -27,8 +27,8 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.errors import ParameterError
+from models.recording import RecordingBlocks
 from noise.base.arrays import Array, Rng
 from noise.base.labels import LABELS
 from noise.base.model_file import ModelKind, load_model, save_model

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.blocks import RecordingBlocks
 from models.errors import BushingNoiseError
+from models.recording import RecordingBlocks
 from noise.base.labels import LABELS
 from noise.base.tables import TABLE_ENDINGS
 from noise.labels.table import HUMAN, read_label_table, table_recordings

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.windows.table import HOP, LENGTH
-from models.blocks import RecordingBlocks
-from models.recording import Channel, Recording
+from models.recording import Channel, Recording, RecordingBlocks
 from noise.base.arrays import Rng
 from noise.labels.windows import window_features
 from noise.training.classifier.background_sounds import WEIGHTS, background_sound
