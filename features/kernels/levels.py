@@ -533,34 +533,3 @@ def _continued(read: Read, n: int, first: int, last: int, margin: int) -> NDArra
         x = np.concatenate([x, 2.0 * x[-1] - x[-2 : -2 - turned : -1]])
         x = np.concatenate([x, np.full(after - turned, x[-1])])
     return x
-
-
-def fast_level_pieces(
-    read: Read, n: int, rate: float, *, reference: float = REFERENCE_PRESSURE
-) -> Iterator[NDArray[np.float64]]:
-    """Yield the A-weighted levels with the time weighting F of a sound that is read in pieces.
-
-    Parameters
-    ----------
-    read, n, rate, reference
-        As for `weighted_levels`.
-
-    Yields
-    ------
-    ndarray, shape (m,)
-        The next levels [dB].
-
-    Examples
-    --------
-    >>> tone = np.sqrt(2) * np.sin(2 * np.pi * 1000 * np.arange(96000) / 48e3)
-    >>> pieces = fast_level_pieces(lambda first, last: tone[first:last], 96000, 48e3)
-    >>> round(float(max(piece.max() for piece in pieces)))
-    94
-    """
-    from scipy.signal import lfilter
-
-    decay, state = _smoothing(rate), np.zeros(1)
-    for piece, scale in _weighted_pieces(read, n, rate):
-        power = (piece * scale) ** 2
-        smoothed, state = lfilter([1.0 - decay], [1.0, -decay], power, zi=state)
-        yield band_levels(smoothed, reference)

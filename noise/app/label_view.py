@@ -42,9 +42,6 @@ _ORDERS = {
 UNLABELLED, PARTLY, CORRECTED, REFUSED = "unlabelled", "partly", "corrected", "refused"
 """Filters besides the labels."""
 
-_LONGEST_NAME = 80
-"""Maximum length of a page identifier."""
-
 _NICE = 10
 """Niceness of the labelling process."""
 
@@ -88,21 +85,17 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def segments(request: Request) -> Response:
         job = opened.job(request.path_params["id"])
-        return JSONResponse(
-            _segments(_page(request.query_params), job.index, labels.rows(job.index))
-        )
+        return JSONResponse(_segments(job.index, labels.rows(job.index)))
 
     def corrected(request: Request, content: dict[str, Any]) -> Response:
         job = opened.job(request.path_params["id"])
         corrections = read_corrections(content.get("rows"))
         if not isinstance(of := content.get("version"), str):
             raise ParameterError("version: must be that of the segments which are corrected")
-        rows = labels.correct(job.index, corrections, of, _page(content))
-        return JSONResponse(_segments(_page(content), job.index, rows))
+        return JSONResponse(_segments(job.index, labels.correct(job.index, corrections, of)))
 
     def undone(_: Request, content: dict[str, Any]) -> Response:
-        page = _page(content)
-        return JSONResponse(_segments(page, *labels.undo(page, redo=content.get("redo") is True)))
+        return JSONResponse(_segments(*labels.undo(redo=content.get("redo") is True)))
 
     def labelled(_: Request, __: dict[str, Any]) -> Response:
         if not labelling.running:
@@ -110,12 +103,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
             labelling.start(["label", "--out", str(labels.path), "--", *paths])
         return JSONResponse(state())
 
-    def _segments(page: str, index: int, rows: Sequence[Row]) -> dict[str, object]:
+    def _segments(index: int, rows: Sequence[Row]) -> dict[str, object]:
         return {
             "id": index,
             "name": opened.jobs[index].name,
             "version": version(rows),
-            "history": labels.history(page),
+            "history": labels.history,
             "rows": [
                 {name: _plain(name, value) for name, value in row.items()}
                 | {"row": number, "conditions": conditions(row)}
@@ -263,11 +256,6 @@ def _plain(name: str, value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return "fixed" if name.startswith("support_stiffness") and value > 0.0 else None
     return plain_cell(value)  # a date of a column of one's own is text
-
-
-def _page(content: Mapping[str, Any]) -> str:
-    """Return the identifier of the page of a request."""
-    return str(content.get("page", ""))[:_LONGEST_NAME]
 
 
 def _nothing(request: Request) -> Response:

@@ -27,7 +27,6 @@ class _Correction:
     index: int
     before: list[Row]
     after: list[Row]
-    by: str
 
 
 class Labels:
@@ -86,9 +85,7 @@ class Labels:
             self.refresh()
             return list(self._rows[index])
 
-    def correct(
-        self, index: int, segments: Sequence[Correction], of: str, by: str = ""
-    ) -> list[Row]:
+    def correct(self, index: int, segments: Sequence[Correction], of: str) -> list[Row]:
         """Replace the segments of a recording, and write the table.
 
         Parameters
@@ -98,8 +95,6 @@ class Labels:
         segments : sequence of Correction
         of : str
             `noise.labels.corrections.version` of the rows that were shown.
-        by : str
-            Page of the correction.
 
         Raises
         ------
@@ -122,23 +117,20 @@ class Labels:
             self._write(index, after)
             changed = _changed_tracks(before, after)
             was, now = ([row for row in rows if track(row) in changed] for rows in (before, after))
-            self._undo.append(_Correction(index, was, now, by))
-            self._redo = [one for one in self._redo if one.by != by]
+            self._undo.append(_Correction(index, was, now))
+            self._redo.clear()
             return after
 
-    def history(self, by: str) -> dict[str, bool]:
-        """Return whether a page can undo and redo."""
-        with self._lock:
-            lists = {"undo": self._undo, "redo": self._redo}
-            return {name: any(one.by == by for one in done) for name, done in lists.items()}
+    @property
+    def history(self) -> dict[str, bool]:
+        """Whether undo and redo are possible."""
+        return {"undo": bool(self._undo), "redo": bool(self._redo)}
 
-    def undo(self, by: str = "", *, redo: bool = False) -> tuple[int, list[Row]]:
-        """Undo the last correction of a page, and write the table.
+    def undo(self, *, redo: bool = False) -> tuple[int, list[Row]]:
+        """Undo the last correction, and write the table.
 
         Parameters
         ----------
-        by : str
-            Page of the corrections.
         redo : bool
             Whether to redo the last undo instead.
 
@@ -149,20 +141,20 @@ class Labels:
         """
         done, undone = (self._redo, self._undo) if redo else (self._undo, self._redo)
         with self._lock, locked(self.path):
-            last = next((one for one in reversed(done) if one.by == by), None)
-            if last is None:
+            if not done:
                 raise ParameterError(f"there is no correction to {'redo' if redo else 'undo'}")
+            last = done[-1]
             self.refresh()
             rows = self._rows[last.index]
             tracks = {track(row) for row in (*last.before, *last.after)}
             if version([row for row in rows if track(row) in tracks]) != version(last.after):
-                done.remove(last)
+                done.pop()
                 name = self._jobs[last.index].name
                 raise ParameterError(f"{name}: what was corrected last has been changed since then")
             rows = [*(row for row in rows if track(row) not in tracks), *last.before]
             self._write(last.index, sorted(rows, key=_order))
-            done.remove(last)
-            undone.append(_Correction(last.index, last.after, last.before, by))
+            undone.append(_Correction(last.index, last.after, last.before))
+            done.pop()
             return last.index, self._rows[last.index]
 
     def _check_version(self, index: int, of: str, rows: Sequence[Row]) -> None:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from features.kernels.levels import REFERENCES, fast_level_pieces, sound_levels
+from features.kernels.levels import REFERENCES, sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, RecordingBlocks
 from noise.app.requests import number
@@ -216,12 +216,6 @@ _RATE = 48000
 _LONGEST_PLAYED = 600.0
 """Maximum duration of one answer [s]."""
 
-_CELL = 0.01
-"""Cell of levels over time, which has the maximum in it [s]."""
-
-_MOST_CELLS = 6000
-"""Maximum number of cells."""
-
 _LONGEST_BANDS = 120.0
 """Maximum interval for band levels [s]."""
 
@@ -234,22 +228,6 @@ def wav(track: Track, query: Query) -> bytes:
     """Return an interval as a WAV file of floats in the unit of the channel."""
     first, last = read_stretch(query, track, _LONGEST_PLAYED)
     return wav_bytes(playable(track.read(first, last), track.rate, _RATE), _RATE, 32)
-
-
-def level_course(track: Track) -> dict[str, object]:
-    """Return the maximum A-weighted level, time weighting F, of each cell."""
-    cell = max(_CELL, track.duration / _MOST_CELLS)
-    levels = np.full(math.ceil(track.n / (cell * track.rate)), -math.inf)
-    first = 0
-    for piece in fast_level_pieces(track.read, track.n, track.rate, reference=track.reference):
-        at = (np.arange(first, first + piece.size) / (cell * track.rate)).astype(int)
-        np.maximum.at(levels, np.minimum(at, levels.size - 1), piece)
-        first += piece.size
-    return {
-        "cell_s": cell,
-        "unit": _weighted(track),
-        "levels": [_plain(level) for level in levels.tolist()],
-    }
 
 
 def bands(track: Track, query: Query) -> dict[str, object]:
@@ -271,10 +249,6 @@ def bands(track: Track, query: Query) -> dict[str, object]:
         "level_af_max": _plain(measured.level_af_max),
         "third_octaves": octaves,
     }
-
-
-def _weighted(track: Track) -> str:
-    return "dBFS(A)" if track.in_full_scale else track.level_unit.replace("dB", "dB(A)", 1)
 
 
 def _plain(level: float) -> float | None:
@@ -397,7 +371,6 @@ def routes(opened: Opened) -> list[BaseRoute]:
         Route(f"{at}/audio", of_track(audio, nullcontext())),
         Route(f"{at}/outline", drawn(outline)),
         Route(f"{at}/spectrogram", drawn(spectrogram)),
-        Route(f"{at}/levels", measured(lambda track, _: level_course(track))),
         Route(f"{at}/bands", measured(bands)),
     ]
 

@@ -47,8 +47,7 @@ class OpenPage(WatchedPage):
         number = row.get_attribute("data-at")  # as they are found
         row.click()
         self.page.get_by_role("heading", name=name).wait_for()
-        for lane in ("plot", "course"):
-            self.page.locator(f".{lane}[data-drawn='{number}']").wait_for()
+        self.page.locator(f".plot[data-drawn='{number}']").wait_for()
         self.page.locator(".strip .segment").first.wait_for()
         self.page.locator(".recording").get_by_text("strongest third octave").wait_for()
         return self

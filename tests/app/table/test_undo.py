@@ -64,16 +64,6 @@ def test_undo_leaves_what_somebody_has_changed_since(tabled):
     assert [label for *_, label, _ in in_table(tabled)] == ["none", "squeal", "none"]
 
 
-def test_undo_on_one_page_leaves_what_was_corrected_on_another(tabled):
-    labels = labels_of(tabled)
-    for index, page in ((0, "one"), (1, "other")):
-        labels.correct(index, [Correction(0.0, 2.0, "creak")], version(labels.rows(index)), page)
-    assert labels.undo("one")[0] == 0
-    assert [label for *_, label, _ in in_table(tabled)] == ["none", "creak", "none"]
-    with pytest.raises(ParameterError, match="no correction"):
-        labels.undo("one")
-
-
 def test_undo_of_one_track_leaves_the_other_as_the_classifier_has_named_it_since(folder):
     def rows(second):
         return [row("a.wav", channel="1"), row("a.wav", second, channel="2")]

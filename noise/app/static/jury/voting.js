@@ -2,17 +2,31 @@
 import { api, told } from "../api.js";
 import { made } from "../dom.js";
 import { listen } from "../labels/keys.js";
-import { RecordingPlayer } from "../labels/player.js";
 import { wav } from "../labels/sounds.js";
+import { Player } from "../shared/player.js";
 
-const RATE = 48000; // sampling rate of the sounds [Hz]
+const { RATE } = Player;
 const VOTES = { 1: "first", 2: "second", 0: "equal" };
 const KEYS = "Keys: A, B to hear A, B; X the other one; Space to play and pause; L loop; 1, 2 to choose A, B; 0 no difference.";
+
+// Slots hold samples at their gain; the shorter sound is silent at its end.
+class PairPlayer extends Player {
+  load() {
+    const { a, b } = this.slots, length = Math.max(a.length, b.length);
+    return Object.fromEntries(Object.entries({ a, b }).map(([slot, samples]) => {
+      const buffer = this.context.createBuffer(1, length, RATE);
+      buffer.copyToChannel(samples, 0);
+      return [slot, buffer];
+    }));
+  }
+
+  factor() { return 1; }
+}
 
 export class Voting {
   constructor(element, goes) {
     this.goes = goes;
-    this.player = new RecordingPlayer(({ samples }) => Promise.resolve(samples));
+    this.player = new PairPlayer();
     this.kept = new Map(); // sounds of this comparison and the next
     this.ready = false;
     this.shown = 0; // number of the newest comparison; earlier answers are outdated
@@ -57,7 +71,6 @@ export class Voting {
     Object.assign(this, { number, ready: false, state: null });
     const shown = ++this.shown;
     this.kept.clear();
-    this.player.kept.clear();
     this.#playing();
     this.saved.textContent = "";
     told(""); // an earlier error may contain a name
@@ -82,11 +95,7 @@ export class Voting {
     if (place === null) return;
     const [a, b] = await this.#sounds(place);
     if (shown !== this.shown) return;
-    const duration = Math.max(a.length, b.length) / RATE; // the shorter one is silent at its end
-    const slot = (side, samples) => ({ id: `${this.number} ${place} ${side}`, samples, channel: "", kind: "pressure", calibrated: false, duration, anchor: null });
-    this.player.put("a", slot("a", a));
-    this.player.put("b", slot("b", b));
-    this.player.position = 0;
+    Object.assign(this.player, { slots: { a, b }, position: 0 });
     this.ready = true;
     this.began = performance.now();
     this.#playing();
@@ -123,9 +132,8 @@ export class Voting {
   }
 
   #start() {
-    const { player } = this, { duration } = player.slots.a;
-    const from = player.playing ? player.now() : player.position;
-    return player.play(from < duration - 0.005 ? from : 0, { start: 0, end: duration });
+    const { player } = this;
+    return player.play(player.playing ? undefined : player.position);
   }
 
   #playing() {

@@ -2,9 +2,6 @@
 import { api } from "../api.js";
 import { painted } from "./edits.js";
 
-// Identifier of the page for undo, which survives a reload.
-const PAGE = (sessionStorage.page ??= crypto.randomUUID());
-
 export class Corrections extends EventTarget {
   // `tell` shows the result of the last change.
   constructor(tell) {
@@ -42,7 +39,7 @@ export class Corrections extends EventTarget {
     do {
       await this.working;
       ({ taken } = this);
-      answer = await api(`recordings/${id}/segments?page=${PAGE}`);
+      answer = await api(`recordings/${id}/segments`);
     } while (id === this.id && (this.working || taken !== this.taken));
     const isOther = id === this.id && answer.version !== this.versions.get(id);
     this.#take(answer);
@@ -158,13 +155,13 @@ export class Corrections extends EventTarget {
     const said = rows?.map(({ start_s, end_s, label, channel, label_source }) => ({ start_s, end_s, label, channel, label_source }));
     if (rows) this.#say(id, name, "saving ...");
     try {
-      const answer = await (rows ? api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id), page: PAGE }) : api("undo", { page: PAGE, redo }));
+      const answer = await (rows ? api(`recordings/${id}/segments`, { rows: said, version: this.versions.get(id) }) : api("undo", { redo }));
       this.#say(answer.id, answer.name, rows ? `saved ${clock()}` : `${did}, saved ${clock()}`);
       this.#take(answer);
       undone?.(answer.id);
     } catch (error) {
       this.#say(id, name, `not ${did}: ${error.message}`);
-      const now = await api(`recordings/${id}/segments?page=${PAGE}`).catch(() => null);
+      const now = await api(`recordings/${id}/segments`).catch(() => null);
       // Drop later changes, which were based on rows that could not be saved.
       const dropped = rows ? this.queue.filter((one) => one.undone || one.id === id) : [];
       this.queue = this.queue.filter((one) => !dropped.includes(one));

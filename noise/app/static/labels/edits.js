@@ -35,14 +35,6 @@ export function relabelled(rows, index, label) {
   return rows.map((row, at) => (at === index ? said(row, { label }) : row));
 }
 
-// Null if a piece would be too short.
-export function split(rows, time) {
-  const at = Math.round(time * 1000) / 1000;
-  const index = rows.findIndex((row) => row.start_s + SHORTEST <= at && at <= row.end_s - SHORTEST);
-  if (index < 0) return null;
-  return rows.flatMap((row, place) => (place === index ? [said(row, { end_s: at }), said(row, { start_s: at })] : [row]));
-}
-
 // Make an interval a segment; remainders that are too short join it.
 export function painted(rows, start, end, label) {
   let from = Math.round(start * 1000) / 1000, to = Math.round(end * 1000) / 1000;
@@ -55,18 +47,6 @@ export function painted(rows, start, end, label) {
     ...(row.end_s > to ? [{ ...row, start_s: Math.max(row.start_s, to) }] : []),
   ]);
   return [...rest, { start_s: from, end_s: to, label, label_source: HUMAN }].sort((one, two) => one.start_s - two.start_s);
-}
-
-// Join a segment to the previous one, or the first to the next; null without a neighbour.
-export function joined(rows, index) {
-  if (rows.length < 2) return null;
-  const into = index > 0 ? index - 1 : 1;
-  const { start_s, end_s } = rows[index];
-  return rows.flatMap((row, at) => {
-    if (at === index) return [];
-    if (at !== into) return [row];
-    return [said(row, { start_s: Math.min(row.start_s, start_s), end_s: Math.max(row.end_s, end_s) })];
-  });
 }
 
 function said(row, change) {

@@ -10,13 +10,8 @@ const TOLD = [
   ["L", "loop on, off: the selection, else the chosen segment, else all"],
   ["← →", "0.1 s back, forward; with Shift 1 s; on a border, move it by 10 ms, with Shift by 100 ms"],
   ["[ ]", "previous, next segment"],
-  ["S", "split at the pointer, or at the play position"],
-  ["Delete", "join to the segment before it"],
-  ["+ −", "zoom in, out; also by the wheel"],
+  ["+ −", "zoom in, out; also by the wheel, which with Shift moves along"],
   ["0 F", "zoom to all, to the selection or segment"],
-  ["H", "multiples of the frequency at the pointer"],
-  ["B", "use this sound as B, from the start of the loop"],
-  ["X", "switch between A and B at the same moment"],
   ["?", "this list"],
 ];
 

@@ -12,7 +12,7 @@ export function drag(node, { pointerId }, move, end) {
 }
 
 export function follow(page) {
-  const { parts, timeline, spectrogram, levels } = page;
+  const { parts, timeline, spectrogram } = page;
   const at = ({ clientX }) => {
     const box = parts.area.getBoundingClientRect();
     return timeline.time((clientX - box.left) / box.width);
@@ -22,7 +22,7 @@ export function follow(page) {
     return Math.min(1, Math.max(0, (clientY - box.top) / box.height));
   };
 
-  for (const lane of [parts.wave, parts.screen, parts.course, parts.stack]) {
+  for (const lane of [parts.wave, parts.screen, parts.stack]) {
     lane.addEventListener("pointerdown", (event) => {
       if (event.button || !page.sound) return;
       const first = at(event);
@@ -38,18 +38,11 @@ export function follow(page) {
       };
       drag(lane, event, move, end);
     });
-    lane.addEventListener("pointermove", (event) => {
-      if (!page.sound || !spectrogram.whole) return;
-      const time = at(event);
-      page.pointed = time;
-      levels.read(time);
-      if (lane === parts.screen) spectrogram.read(time, spectrogram.frequency(height(event, lane)));
-    });
-    lane.addEventListener("pointerleave", () => {
-      page.pointed = null;
-      spectrogram.read(null);
-    });
   }
+  parts.screen.addEventListener("pointermove", (event) => {
+    if (page.sound && spectrogram.whole) spectrogram.read(at(event), spectrogram.frequency(height(event, parts.screen)));
+  });
+  parts.screen.addEventListener("pointerleave", () => spectrogram.read(null));
 
   parts.area.addEventListener("wheel", (event) => {
     if (!page.sound) return;
@@ -57,20 +50,4 @@ export function follow(page) {
     if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) timeline.pan((event.deltaX || event.deltaY) / parts.area.clientWidth);
     else timeline.zoom(Math.exp(-WHEEL * event.deltaY), at(event));
   }, { passive: false });
-
-  // Move the cursor by keys.
-  parts.screen.addEventListener("keydown", (event) => {
-    const [right, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
-    if ((!right && !up) || event.ctrlKey || event.metaKey || event.altKey || !spectrogram.whole) return;
-    event.preventDefault();
-    const far = event.shiftKey ? 10 : 1;
-    const cursor = spectrogram.cursor ?? { time: timeline.position, frequency: 1000 };
-    const time = Math.min(timeline.duration, Math.max(0, cursor.time + (right * far * timeline.span) / parts.screen.clientWidth));
-    const share = spectrogram.share(cursor.frequency) - (up * far) / parts.screen.clientHeight;
-    timeline.follow(time);
-    page.pointed = time;
-    levels.read(time);
-    spectrogram.read(time, spectrogram.frequency(share));
-  });
-  parts.screen.addEventListener("blur", () => { page.pointed = null; spectrogram.read(null); });
 }

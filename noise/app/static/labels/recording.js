@@ -1,21 +1,20 @@
-// Page of one recording: lanes, segments, player and keys.
+// Page of one recording: lanes, segments, player, keys and corrections.
 import { told } from "../api.js";
 import { Corrections } from "./corrections.js";
-import { agree, joinHere, label, splitHere, undo } from "./editing.js";
+import { relabelled, SHORTEST } from "./edits.js";
 import { build, LABELS } from "./frame.js";
 import { listen } from "./keys.js";
-import { LevelCourse, levelsOf } from "./levels.js";
 import { made, onceShown } from "../dom.js";
 import { refresh } from "./list.js";
 import { Outline } from "./outline.js";
 import { RecordingPlayer } from "./player.js";
 import { follow } from "./pointer.js";
 import { Segments, showSegment } from "./segments.js";
-import { about } from "./sounds.js";
+import { about, levelsOf } from "./sounds.js";
 import { Spectrogram } from "./spectrogram.js";
 import { drawTimes, Timeline } from "./timeline.js";
 
-const ZOOM = 1.6, PAN = 0.3;
+const ZOOM = 1.6;
 const POLL = 1500; // while waiting for labels [ms]
 
 export class RecordingPage {
@@ -28,7 +27,6 @@ export class RecordingPage {
     this.corrections = new Corrections((text) => { parts.saved.textContent = text; });
     this.spectrogram = new Spectrogram(timeline, { plot: parts.plot, marks: parts.marks, axis: parts.frequencies, legend: parts.legend, readout: parts.readout });
     this.outline = new Outline(timeline, { plot: parts.wave, axis: parts.waveAxis });
-    this.levels = new LevelCourse(timeline, { plot: parts.course, axis: parts.courseAxis, readout: parts.levelRead });
     this.segments = new Segments(timeline, this.corrections, parts, () => this.#chosen());
     this.beside = new Set(); // names of additional visible channels
     this.stacked = [];
@@ -47,11 +45,11 @@ export class RecordingPage {
   async open(id) {
     const { parts } = this;
     this.id = id;
-    this.sound = this.pointed = null; // of the previous recording
+    this.sound = null; // of the previous recording
     this.corrections.leave(id);
     clearTimeout(this.timer);
     this.turn = null; // pending levels are outdated
-    for (const said of [parts.saved, parts.readout, parts.levelRead, parts.levels]) said.textContent = "";
+    for (const said of [parts.saved, parts.readout, parts.levels]) said.textContent = "";
     clearTimeout(this.measuring);
     // Load all in parallel.
     const seen = this.spectrogram.load(id, null);
@@ -66,14 +64,11 @@ export class RecordingPage {
     parts.channel.box.value = this.channel;
     this.timeline.reset(sound.duration_s);
     this.timeline.select(null);
-    this.player.put("a", this.#slot());
-    this.player.stop();
+    this.#play();
     this.timeline.go(0);
     this.player.position = 0;
     await Promise.all([seen, this.outline.load(id, this.channel), this.#labels(id), this.#stack()]);
-    if (id !== this.id) return;
-    await this.levels.load(id, this.channel);
-    this.#chosen();
+    if (id === this.id) this.#chosen();
   }
 
   // Show additional channels on the same time axis.
@@ -99,10 +94,11 @@ export class RecordingPage {
     this.timer = setTimeout(() => onceShown(this.element, () => { if (id === this.id && !this.corrections.rows.length) this.#labels(id); }), POLL);
   }
 
-  #slot() {
-    const { name, channels, calibrated, duration_s: duration } = this.sound;
+  // Put the channel into the player.
+  #play() {
+    const { channels, calibrated, duration_s: duration } = this.sound;
     const { kind } = channels.find((one) => one.name === this.channel);
-    return { id: this.id, name, channel: this.channel, kind, calibrated: calibrated && kind === "pressure", duration, anchor: null };
+    this.player.put({ id: this.id, channel: this.channel, kind, calibrated: calibrated && kind === "pressure", duration });
   }
 
   async hearChannel(name) {
@@ -110,8 +106,8 @@ export class RecordingPage {
     this.channel = name;
     const at = this.sound.channels.findIndex((one) => one.name === name);
     if (this.corrections.tracks.includes(`${at + 1}`)) this.corrections.show(`${at + 1}`);
-    this.player.put("a", this.#slot());
-    await Promise.all([...[this.spectrogram, this.outline, this.levels].map((lane) => lane.load(this.id, name)), this.#stack()]);
+    this.#play();
+    await Promise.all([...[this.spectrogram, this.outline].map((lane) => lane.load(this.id, name)), this.#stack()]);
     this.#stretch();
   }
 
@@ -141,13 +137,7 @@ export class RecordingPage {
     const { parts, player } = this;
     parts.play.textContent = player.playing ? "Pause" : "Play";
     parts.loop.setAttribute("aria-pressed", player.looping);
-    for (const slot of ["a", "b"]) {
-      parts[slot].setAttribute("aria-pressed", player.active === slot);
-      parts[slot].disabled = !player.slots[slot];
-      parts[slot].setAttribute("aria-label", `${slot.toUpperCase()}: ${player.slots[slot]?.name ?? "empty"}`);
-      parts[slot].title = player.slots[slot]?.name ?? "empty";
-    }
-    parts.gains.textContent = player.words + (player.slots.b ? `. B is ${player.slots.b.name}.` : "");
+    parts.gains.textContent = player.words;
     cancelAnimationFrame(this.frame);
     const step = () => {
       if (!player.playing) return;
@@ -159,7 +149,6 @@ export class RecordingPage {
 
   #view() {
     for (const lane of [this.spectrogram, this.outline, ...this.stacked]) { lane.draw(); lane.refine(); }
-    this.levels.draw();
     drawTimes(this.parts.times, this.timeline);
     this.segments.draw();
     this.#marks();
@@ -184,10 +173,8 @@ export class RecordingPage {
 
   #rows() {
     showSegment(this.parts, this.segments.chosen);
-    const { rows, shown, history, queue } = this.corrections, { parts } = this;
+    const { rows, history, queue } = this.corrections, { parts } = this;
     parts.agree.disabled = rows.every((row) => row.label_source === "human");
-    parts.split.disabled = !rows.length;
-    parts.join.disabled = shown.length < 2;
     parts.undo.disabled = !history.undo && !queue.length;
     parts.redo.disabled = !history.redo;
   }
@@ -211,13 +198,6 @@ export class RecordingPage {
     }, 60);
   }
 
-  keepAsB() {
-    const { selection } = this.timeline;
-    const from = selection?.start ?? (this.player.looping && this.segments.chosen ? this.segments.chosen.start_s : null);
-    this.player.put("b", { ...this.#slot(), anchor: from });
-    told(`B is ${this.sound.name}${from === null ? "" : ` from ${from.toFixed(2)} s on`}. Open another recording as A; X switches between them.`);
-  }
-
   #loop() {
     this.player.looping = !this.player.looping;
     this.#playing();
@@ -226,32 +206,27 @@ export class RecordingPage {
 
   // Actions of buttons, by name, and of keys.
   #actions() {
-    const { parts, timeline, player, segments, spectrogram } = this;
+    const { parts, timeline, player, segments } = this;
     const buttons = {
       play: () => (player.playing ? player.stop() : this.play()), loop: () => this.#loop(),
-      harmonic: () => {
-        spectrogram.harmonic = !spectrogram.harmonic;
-        parts.harmonic.setAttribute("aria-pressed", spectrogram.harmonic);
-        spectrogram.drawMarks();
-      },
-      a: () => player.hear("a"), b: () => player.hear("b"), keep: () => this.keepAsB(), help: () => parts.dialog.showModal(),
-      in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), left: () => timeline.pan(-PAN), right: () => timeline.pan(PAN), whole: () => timeline.whole(),
+      help: () => parts.dialog.showModal(),
+      in: () => timeline.zoom(ZOOM), out: () => timeline.zoom(1 / ZOOM), whole: () => timeline.whole(),
       fit: () => {
         const { start, end } = timeline.selection ?? { start: segments.chosen?.start_s, end: segments.chosen?.end_s };
         if (start !== undefined) timeline.fit(start, end);
       },
-      split: () => splitHere(this), join: () => joinHere(this), undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this),
+      undo: () => undo(this), redo: () => undo(this, true), agree: () => agree(this),
     };
     const step = (sign) => ({ shiftKey }) => this.seek(timeline.position + sign * (shiftKey ? 1 : 0.1));
     const beside = (sign) => () => { segments.choose(segments.at + sign); if (segments.chosen) timeline.go(segments.chosen.start_s); };
     const named = {
-      " ": "play", l: "loop", h: "harmonic", b: "keep", s: "split", c: "agree", u: "undo", "Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo",
-      Delete: "join", Backspace: "join", "+": "in", "=": "in", "-": "out", 0: "whole", f: "fit", "?": "help",
+      " ": "play", l: "loop", c: "agree", u: "undo", "Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo",
+      "+": "in", "=": "in", "-": "out", 0: "whole", f: "fit", "?": "help",
     };
     const keys = {
       ...Object.fromEntries(Object.entries(named).map(([key, name]) => [key, buttons[name]])),
       ...Object.fromEntries(LABELS.map((name, at) => [at + 1, () => label(this, name)])),
-      x: () => player.hear(player.active === "a" ? "b" : "a"), ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1), Escape: () => timeline.select(null),
+      ArrowLeft: step(-1), ArrowRight: step(1), "[": beside(-1), "]": beside(1), Escape: () => timeline.select(null),
     };
     for (const [name, action] of Object.entries(buttons)) parts[name].addEventListener("click", () => { if (this.sound) action(); });
     for (const button of parts.labels.children) button.addEventListener("click", () => label(this, button.dataset.label));
@@ -263,4 +238,36 @@ export class RecordingPage {
     };
     listen(this.element, Object.fromEntries(Object.entries(keys).map(([key, action]) => [key, act(action)])));
   }
+}
+
+// Label the selection on all tracks, else the segment at the cursor.
+function label({ corrections, segments, timeline, player, sound }, said) {
+  const { selection, position } = timeline;
+  corrections.inTurn(() => {
+    if (selection && selection.end - selection.start < SHORTEST) return told(`A segment is at least ${1000 * SHORTEST} ms long: select more.`);
+    if (selection || !segments.chosen) {
+      const { start, end } = selection ?? { start: 0, end: timeline.duration };
+      corrections.paint(start, end, said, sound?.tracks ?? []);
+      timeline.select(null);
+      return segments.chooseAt(0.5 * (start + end));
+    }
+    if (player.playing && !player.looping) segments.chooseAt(position);
+    corrections.write(relabelled(corrections.shown, segments.at, said));
+  });
+}
+
+// Confirm all labels.
+function agree({ corrections }) {
+  corrections.inTurn(() => {
+    if (!corrections.rows.length) return told("There are no labels to confirm yet.");
+    corrections.writeAll(corrections.rows.map((row) => ({ ...row, label_source: "human" })));
+  });
+}
+
+// Undo or redo, and open the recording of the change.
+function undo(page, redo = false) {
+  page.corrections.inTurn(async () => {
+    const id = await page.corrections.undo(redo);
+    if (id !== null && id !== page.id) page.onOpen(id);
+  });
 }

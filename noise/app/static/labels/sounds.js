@@ -3,12 +3,10 @@ import { api, bytes } from "../api.js";
 
 export const about = (id) => api(`sounds/${id}`);
 
-export function asked(id, what, said) {
+function asked(id, what, said) {
   const query = Object.entries(said).filter(([, value]) => value !== null && value !== undefined);
   return `sounds/${id}/${what}?${new URLSearchParams(query)}`;
 }
-
-export const facts = (id, what, said) => api(asked(id, what, said));
 
 // Response of header length, JSON header and numbers.
 export async function numbers(id, what, said, Kind) {
@@ -16,6 +14,15 @@ export async function numbers(id, what, said, Kind) {
   const length = new DataView(buffer).getUint32(0, true);
   const meaning = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
   return { ...meaning, values: new Kind(buffer, 4 + length) };
+}
+
+// Levels of an interval in words.
+export async function levelsOf(id, channel, from, to) {
+  const { start, end, unit, level, level_a: weighted, level_af_max: most, third_octaves: octaves } = await api(asked(id, "bands", { channel, start: from, end: to }));
+  const said = (value, what) => (value === null ? [] : [`${value.toFixed(1)} ${what}`]);
+  const strongest = Object.entries(octaves).filter(([, value]) => value !== null).sort(([, one], [, two]) => two - one)[0];
+  const words = [...said(level, unit), ...said(weighted, unit === "dBFS" ? "dBFS(A)" : "dB(A)"), ...said(most, "Fast at most")].join(", ");
+  return `${start.toFixed(2)}–${end.toFixed(2)} s: ${words}${strongest ? `; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)}` : ""}`;
 }
 
 // Samples of a WAV file of floats.

@@ -1,16 +1,14 @@
-// Spectrogram with axes, cursor readout and harmonics.
+// Spectrogram with axes and cursor readout.
 import { numbers } from "./sounds.js";
 import { DEEP, drawAxis, INK, SOFT, sheet } from "./timeline.js";
 
 const FINER = 90; // after the view has come to rest [ms]
 const RANGE = 70; // from the darkest colour to white [dB]
-const HARMONICS = 20;
 const FREQUENCIES = [20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000];
 
 export class Spectrogram {
   constructor(timeline, { plot, marks, axis, legend, readout }) {
     Object.assign(this, { timeline, plot, marks, axis, legend, readout });
-    this.harmonic = false;
     this.cursor = null; // { time, frequency }
     this.whole = this.fine = null;
     this.turn = 0;
@@ -150,30 +148,11 @@ export class Spectrogram {
   drawMarks() {
     const { pen, width, height } = sheet(this.marks);
     if (!this.cursor || !this.whole) return;
-    const x = this.timeline.share(this.cursor.time) * width;
-    const line = (share, strong) => {
-      const y = Math.round(share * height) + 0.5;
-      pen.strokeStyle = "#fff";
-      pen.lineWidth = strong ? 3 : 2;
+    const x = Math.round(this.timeline.share(this.cursor.time) * width) + 0.5, y = Math.round(this.share(this.cursor.frequency) * height) + 0.5;
+    for (const [strokeStyle, lineWidth] of [["#fff", 3], [DEEP, 1]]) {
+      Object.assign(pen, { strokeStyle, lineWidth });
       stroke(pen, 0, y, width, y);
-      pen.strokeStyle = strong ? DEEP : INK;
-      pen.lineWidth = 1;
-      stroke(pen, 0, y, width, y);
-    };
-    line(this.share(this.cursor.frequency), true);
-    pen.strokeStyle = DEEP;
-    stroke(pen, Math.round(x) + 0.5, 0, Math.round(x) + 0.5, height);
-    if (!this.harmonic) return;
-    for (let k = 2; k <= HARMONICS; k++) {
-      const frequency = k * this.cursor.frequency;
-      if (frequency > this.whole.high) break;
-      line(this.share(frequency), false);
-      if (k > 10) continue;
-      pen.fillStyle = "#ffffffd0";
-      pen.fillRect(width - 22, this.share(frequency) * height - 6, 20, 12);
-      pen.fillStyle = INK;
-      pen.textBaseline = "middle";
-      pen.fillText(`${k}f`, width - 19, this.share(frequency) * height);
+      stroke(pen, x, 0, x, height);
     }
   }
 }
