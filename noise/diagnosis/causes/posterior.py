@@ -1,15 +1,15 @@
-"""Posterior probability of each cause: trees over the evidence, with calibrated probabilities.
+"""Posterior probability of each cause: boosted trees over the evidence, calibrated.
 
-The causes are not exclusive, an effect may come with another; ``none``, ``parameters`` and
-``unknown`` are. So each has boosted trees of its own, and the calibration is a logistic one on
-their logarithmic odds, the strongest other ones and those of ``none``, fitted on cases that the
+Effects are not exclusive: one may occur with another. ``none``, ``parameters`` and ``unknown`` are
+exclusive. Each cause has boosted trees of its own. The calibration is a logistic regression on the
+log odds of the cause, of the strongest other cause and of ``none``. It is fitted on cases that the
 trees have not seen.
 
-What it says of a bench where nothing is the matter is simulated where sensors are unlike those that
-it learned with. Of each condition of a case a few repeats are simulated, as noisy as its sensors
-are. Some of them in the place of the recordings, others in that of what the rig file predicts, are
-a case without a cause, and there are many such choices. Sensors that the posterior has not learned
-with change what it says of these cases as they change what it says of the recordings.
+Where the sensors of a bench are unlike those of the training cases, the null distribution is
+simulated. A few repeats of each condition are simulated with the noise of the sensors. Some of them
+take the place of the recordings and others that of the prediction of the rig file, which makes a
+case without a cause; there are many such choices. Unusual sensors change the posterior of these
+cases in the same way as that of the recordings.
 """
 
 from __future__ import annotations
@@ -40,14 +40,12 @@ from sim.effects.effect import Effect
 
 if TYPE_CHECKING:
     from noise.diagnosis.case import Case
-    from noise.diagnosis.evidence.summary import CaseTable
-
 
 N_NULLS = 200
-"""Cases without a cause."""
+"""Number of simulated cases without a cause."""
 
 _N_REPEATS, _N_PREDICTED = 8, 3
-"""Repeats a condition, and how many of them predict; the latter as in `case_table`."""
+"""Repeats per condition, and how many of them are the prediction; the latter as in `case_table`."""
 
 
 def null_log_odds(
@@ -63,7 +61,7 @@ def null_log_odds(
     ----------
     case : Case
     table : CaseTable
-        Of its recordings.
+        Numbers of its recordings.
     posterior : Posterior
     library : mapping of str to Effect
         Effects that the rig's can be found among.
@@ -72,7 +70,7 @@ def null_log_odds(
     Returns
     -------
     ndarray, shape (n_nulls, n_causes)
-        Natural logarithms of odds, as of `Posterior.log_odds` [-].
+        Uncalibrated log odds, as `Posterior.log_odds` returns them [-].
 
     Raises
     ------
@@ -99,7 +97,7 @@ def _null(
     repeats: Mapping[tuple[float, ...], NDArray[np.float64]],
     rng: np.random.Generator,
 ) -> CaseTable:
-    """Return a table with repeats in place of recordings and of their predictions."""
+    """Return a table with repeats in the place of the recordings and of their predictions."""
     recorded, predicted = {}, {}
     for key, rows in repeats.items():
         mixed = rows[rng.permutation(len(rows))]
@@ -111,17 +109,17 @@ def _null(
 
 
 def as_seldom(value: float, nulls: NDArray[np.float64], n_recordings: int) -> float:
-    """Return the share of cases without a cause that have so low a value [-].
+    """Return the share of cases without a cause whose value is as low or lower [-].
 
     Parameters
     ----------
     value : float
         [any unit]
     nulls : ndarray, shape (n_nulls,)
-        Of such cases [unit of `value`].
+        Values of the cases without a cause [unit of `value`].
     n_recordings : int
-        Of which each has been simulated; of one alone there are few choices, whose tail says more
-        than their ranks.
+        Recordings of a case. With a single recording there are few choices of repeats; the share
+        then comes from a t distribution rather than from ranks.
 
     Examples
     --------
@@ -138,7 +136,7 @@ def as_seldom(value: float, nulls: NDArray[np.float64], n_recordings: int) -> fl
 
 
 CAUSES = (*sorted(EFFECTS), "parameters", "unknown", "none")
-"""What can be the matter."""
+"""Causes in the order of the columns: the effects, then the exclusive causes."""
 
 _KIND = ModelKind(
     "cause posterior", 2, "python -m noise.training.causes train FOLDER --out",
@@ -147,7 +145,7 @@ _KIND = ModelKind(
 
 _ARRAYS = ("scale", "weights", "columns")
 _LARGEST = 12.0
-"""Of a logarithm of odds: no library is large enough to tell more."""
+"""Limit of log odds [-]: the training cases are too few to support larger ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,19 +155,19 @@ class Posterior:
     Parameters
     ----------
     names : tuple of str
-        Numbers of a recording that count, each in its own unit.
+        Numbers of a recording that are used, each in its own unit.
     scale : ndarray, shape (n_names,)
-        Scatter of each without a cause, [unit of the number].
+        Scatter of each number without a cause [unit of the number].
     columns : ndarray of int, shape (n_columns,)
-        Of the evidence that the trees look at.
+        Columns of the evidence that the trees use.
     trees : BoostedTrees
-        Their scores are logarithmic odds of each of `CAUSES`.
+        Their scores are the log odds of each of `CAUSES`.
     weights : ndarray, shape (n_causes, 4)
-        Of the calibration: constant, own odds, strongest other, none [-].
+        Weights of the calibration: constant, own log odds, strongest other, ``none`` [-].
     alarm : float
         Probability [-] of ``none`` below which there is something to explain.
     card : mapping
-        How it was made: seed, counts, scores.
+        Seed, counts and scores of the training.
     """
 
     names: tuple[str, ...]
@@ -211,12 +209,12 @@ def odds_features(odds: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     odds : ndarray, shape (n, n_causes)
-        Natural logarithms of odds [-].
+        Log odds [-].
 
     Returns
     -------
     ndarray, shape (n, n_causes, 4)
-        Constant, own odds, strongest other odds, odds of ``none`` [-].
+        Constant, own log odds, strongest other log odds, log odds of ``none`` [-].
     """
     odds = np.clip(odds, -_LARGEST, _LARGEST)
     others = np.stack(
@@ -232,9 +230,9 @@ def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
     Parameters
     ----------
     odds : ndarray, shape (n, n_causes)
-        Natural logarithms of odds [-].
+        Log odds [-].
     weights : ndarray, shape (n_causes, 4)
-        As of `Posterior` [-].
+        Weights of the calibration, as in `Posterior` [-].
 
     Returns
     -------
@@ -252,7 +250,7 @@ def calibrated(odds: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
 
 
 def load_posterior(path: str | Path | None = None) -> Posterior:
-    """Load a cause posterior, by default the one that is shipped.
+    """Load a cause posterior; by default the shipped one.
 
     Parameters
     ----------
@@ -266,7 +264,7 @@ def load_posterior(path: str | Path | None = None) -> Posterior:
     Raises
     ------
     ParameterError
-        If the file is none that `Posterior.save` wrote.
+        If `Posterior.save` did not write the file.
     """
     return load_model(path, _KIND, _built)
 

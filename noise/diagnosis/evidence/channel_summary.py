@@ -1,10 +1,10 @@
-"""Health of a channel in numbers, and its differences from what the torque should have made of it.
+"""Numbers of a channel: distribution, noise floor, hum, and deviation from the predicted channel.
 
-Clipping, offset, hum and noise floor need no model: a sensor that fails shows it in its own signal.
+Clipping, offset, hum and noise floor need no model, since a sensor fault shows in its own signal.
 
-The torque that was measured is sent through the transfer function that the rig file has, so that
-nothing the contact does enters: gain, delay and coherence by band, the shape of what the channel
-has too much, when it comes, and how it decays.
+Acceleration and sound are predicted from the measured torque with the transfer functions of the
+rig file, so that the behaviour of the contact cancels. Gain, delay and coherence by band follow,
+and spectrum, timing and decay of the residual.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ BAND_EDGES = np.array([
 """[Hz]; band 1 lies between the first two."""
 
 USABLE = 0.42
-"""Share of the sampling rate up to which a band counts [-], below what filters fade; assumed."""
+"""Highest usable frequency over the sampling rate [-]; anti-alias filters fade above; assumed."""
 
 
 def band_levels(x: Array, rate: float) -> dict[str, float]:
-    """Summarise how loud a signal is in each band.
+    """Return the level of a signal in each band.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def band_levels(x: Array, rate: float) -> dict[str, float]:
 
 @lru_cache(maxsize=8)
 def segment_frequency(rate: float) -> tuple[int, Array]:
-    """Length of the segments in which bands are resolved, and the frequency of their bins.
+    """Return the segment length for band levels, and the frequency of each bin.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def segment_frequency(rate: float) -> tuple[int, Array]:
 
 
 def powers(spectra: NDArray[np.complex128]) -> Array:
-    """Power of each line of spectra.
+    """Return the power of each line of spectra.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def band_sums(values: Array, first: NDArray[np.int64], last: NDArray[np.int64]) 
     values : ndarray, shape (..., n_bins)
         [any unit]
     first, last : ndarray of int, shape (n_bands,)
-        First bin of each band, and first after it.
+        First bin of each band, and the bin after its last.
 
     Returns
     -------
@@ -133,7 +133,7 @@ def band_sums(values: Array, first: NDArray[np.int64], last: NDArray[np.int64]) 
 
 @lru_cache(maxsize=8)
 def band_bins(rate: float) -> tuple[tuple[int, ...], NDArray[np.int64], NDArray[np.int64]]:
-    """Find which bins lie in each of the bands that a rate reaches.
+    """Return the bins of each band below the usable frequency.
 
     Parameters
     ----------
@@ -143,9 +143,9 @@ def band_bins(rate: float) -> tuple[tuple[int, ...], NDArray[np.int64], NDArray[
     Returns
     -------
     numbers : tuple of int
-        Of the bands, from 1.
+        Numbers of the bands, from 1.
     first, last : ndarray of int, shape (n_bands,)
-        First bin of `segment_frequency` that lies in each, and first after it.
+        First bin of each band, as of `segment_frequency`, and the bin after its last.
 
     Examples
     --------
@@ -159,14 +159,14 @@ def band_bins(rate: float) -> tuple[tuple[int, ...], NDArray[np.int64], NDArray[
 
 
 def bins_between(frequency: Array, band: tuple[float, float]) -> slice:
-    """Find the bins between two frequencies.
+    """Return the bins between two frequencies.
 
     Parameters
     ----------
     frequency : ndarray, shape (n_bins,)
         Rising [Hz].
     band : tuple of float
-        The two, which are not in it [Hz].
+        Lower and upper frequency, exclusive [Hz].
 
     Returns
     -------
@@ -187,16 +187,16 @@ _FLOOR_BANDS = ((100.0, 700.0), (700.0, 2500.0), (2500.0, 6000.0), (6000.0, 1000
 """[Hz]"""
 
 _FLOOR_LENGTH = 1024
-"""Of the segments whose quietest tenth is the floor [samples]; assumed."""
+"""Length of the segments for the noise floor [samples]; assumed."""
 
 _QUIET = 0.1
-"""Of the segments; assumed."""
+"""Quantile of the power over segments that is the noise floor [-]; assumed."""
 
 _MAINS = (50, 60)
 """[Hz]"""
 
 _HUM_RATE = 4e3
-"""Sampling rate at which their harmonics are looked for, at least [Hz]."""
+"""Least sampling rate of the signal in which mains harmonics are searched [Hz]."""
 
 
 def channel_summary(x: Array, rate: float) -> Numbers:
@@ -253,7 +253,7 @@ def _floor_bins(rate: float) -> tuple[slice, ...]:
 
 
 def hum_summary(x: Array, rate: float) -> Numbers:
-    """Summarise how far the mains' harmonics stand out of what lies beside them.
+    """Return the power of mains harmonics over that of neighbouring lines.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def hum_summary(x: Array, rate: float) -> Numbers:
     Returns
     -------
     dict of str to float
-        Logarithms of ratios of power [-]; ``hum_level`` that of an amplitude in the channel's unit.
+        Logarithms of power ratios [-]; ``hum_level`` is that of an amplitude in the channel's unit.
 
     Examples
     --------
@@ -274,7 +274,7 @@ def hum_summary(x: Array, rate: float) -> Numbers:
     >>> hum["hum_50"] > hum["hum_60"]
     True
     """
-    # Harmonics lie in the lowest bins; of the others no power is asked.
+    # Harmonics lie in the lowest bins; the power of others is not needed.
     every = max(1, int(rate / _HUM_RATE))
     slow = _thinned(x, every)
     n = slow.size
@@ -293,7 +293,7 @@ def hum_summary(x: Array, rate: float) -> Numbers:
 
 
 def _thinned(x: Array, every: int) -> Array:
-    """Average a signal over triangles that overlap by half."""
+    """Reduce the sampling rate by averages over triangles that overlap by half."""
     blocks = x[: x.size // every * every].reshape(-1, every)
     rise = (np.arange(every) + 0.5) / every**2
     return np.asarray((blocks @ rise)[:-1] + (blocks @ rise[::-1])[1:])
@@ -306,9 +306,9 @@ def _detrended(x: Array) -> Array:
 
 
 def _line_ratio(power: Array, line: int) -> float:
-    """Power of a line over the median of what lies 5 to 12 bins beside it [-].
+    """Return the power of a line over the median power 5 to 12 bins beside it [-].
 
-    The line is the largest of five; 1 where the spectrum ends before.
+    The largest of five bins counts. The ratio is 1 where the spectrum ends before.
     """
     if line + 13 > power.size:
         return 1.0
@@ -320,7 +320,7 @@ def _line_ratio(power: Array, line: int) -> float:
 
 @lru_cache(maxsize=16)
 def _hum_lines(spacing: float) -> tuple[NDArray[np.int64], int, int]:
-    """Bins of the harmonics of each mains, and between which the strongest hum is looked for."""
+    """Return the bins of the mains harmonics, and the first and last bin of the fundamental."""
     lines = [round(k * mains / spacing) for mains in _MAINS for k in range(1, 8)]
     return np.array(lines), math.ceil(44.0 / spacing), math.floor(66.0 / spacing)
 
@@ -330,13 +330,13 @@ def _log_share(those: NDArray[np.bool_]) -> float:
 
 
 def _dwell(there: NDArray[np.bool_]) -> float:
-    """Logarithm of the mean length of a stay in samples [-]."""
+    """Return the logarithm of the mean length of a stay in samples [-]."""
     entries = int(np.count_nonzero(there[1:] & ~there[:-1]))
     return math.log(max(int(np.count_nonzero(there)), 1) / max(entries, 1))
 
 
 def quantile(x: Array, share: float) -> Array:
-    """Quantile along the first axis, as of `numpy.quantile` without its checks.
+    """Return a quantile along the first axis, as `numpy.quantile` without its checks.
 
     Parameters
     ----------
@@ -363,24 +363,24 @@ def quantile(x: Array, share: float) -> Array:
 
 
 _LEAD, _TAIL = 0.08, 0.01
-"""Left out at the ends, where the structure rings from before and nothing follows [s]; assumed."""
+"""Lengths left out at the start, where earlier vibration still decays, and at the end [s];
+assumed."""
 
 _LONGEST_DELAY = 2.5e-3
 _COARSE, _FINE = 4, 16
-"""Resolution of the delay, in parts of a sample."""
+"""Resolution of the delay: steps per sample, first coarse, then fine."""
 
 _REFERENCE_BAND = (80.0, 6000.0)
-"""In which gain and delay are those of the whole channel [Hz]; assumed."""
+"""Band of the broadband gain and delay [Hz]; assumed."""
 
 _ECHO = (6e-4, 2e-2)
-"""In which echoes are looked for, after what is direct [s]; assumed."""
+"""Range of delays of echoes after the direct sound [s]; assumed."""
 
 _SHORT = 256
-"""Samples of a short segment, which separate impacts from lasting sound; assumed."""
+"""Length of the segments that separate impacts from continuous sound [samples]; assumed."""
 
 _LOW, _HIGHEST = (-1.0, 2500.0), 12e3
-"""Bands of short segments: low from the constant on, high from there up to the highest [Hz];
-assumed."""
+"""Low band of short segments, and upper limit of the high band above it [Hz]; assumed."""
 
 _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 
@@ -388,7 +388,7 @@ _CROSS_BANDS = ((100.0, 600.0), (600.0, 2000.0), (2000.0, 6000.0))
 def path_summary(
     predicted: Array, measured: Array, rate: float, slips: Array
 ) -> tuple[Numbers, Array]:
-    """Compare a channel with its prediction.
+    """Compare a channel with its prediction from the measured torque.
 
     Parameters
     ----------
@@ -402,9 +402,9 @@ def path_summary(
     Returns
     -------
     numbers : dict of str to float
-        By name, those of a band with its number; ratios and coherences as logarithms [-], ``delay``
-        in microseconds, ``*_at`` as logarithms of seconds or hertz; none of a recording that is
-        shorter than the segments by which bands are told.
+        By name, with the number of the band where there is one: ratios and coherences as logarithms
+        [-], ``delay`` in microseconds, ``*_at`` as logarithms of seconds or hertz. Empty for a
+        recording that is shorter than a segment.
     residual : ndarray, shape (n_kept,)
         Measured less predicted, without its ends [unit of the channel].
 
@@ -432,19 +432,19 @@ def path_summary(
 
 
 def common_residual(one: Array, other: Array, rate: float) -> Numbers:
-    """Coherence, by band, of what two channels have too much.
+    """Return the coherence of the residuals of two channels by band.
 
     Parameters
     ----------
     one, other : ndarray, shape (n,)
-        Residuals as `path_summary` gives them, each in its unit.
+        Residuals as `path_summary` returns them, each in its unit.
     rate : float
         Sampling rate [Hz].
 
     Returns
     -------
     dict of str to float
-        Logarithms of coherences [-]; none of residuals that are shorter than a segment.
+        Logarithms of coherences [-]; empty for residuals that are shorter than a segment.
 
     Examples
     --------
@@ -467,7 +467,7 @@ def common_residual(one: Array, other: Array, rate: float) -> Numbers:
 
 @lru_cache(maxsize=32)
 def _bins(band: tuple[float, float], length: int, rate: float) -> slice:
-    """Bins of a spectrum of `length` samples between two frequencies [Hz]."""
+    """Return the bins of a spectrum of `length` samples between two frequencies [Hz]."""
     return bins_between(np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64), band)
 
 
@@ -492,7 +492,7 @@ def _by_band(pp: Array, mm: Array, pm: NDArray[np.complex128], left: Array, rate
 
 
 def _transfer(size: int, pp: Array, mm: Array, pm: NDArray[np.complex128], rate: float) -> Numbers:
-    """Gain, tilt, delay and decay of the transfer function from predicted to measured."""
+    """Return gain, tilt, delay and decay of the transfer function from predicted to measured."""
     inside, n_bins = _bins(_REFERENCE_BAND, size, rate), size // 2 + 1
     octaves, taper = _weights(size, rate)
     h = pm[inside] / np.maximum(pp[inside], 1e-30)
@@ -529,7 +529,7 @@ def _transfer(size: int, pp: Array, mm: Array, pm: NDArray[np.complex128], rate:
 
 
 def _strongest(spectrum: NDArray[np.complex128], inside: slice, most: int) -> tuple[float, float]:
-    """Find where one side of a spectrum adds up to most, within so many samples of the start.
+    """Find the lag at which the transform of a one-sided spectrum is largest, up to `most` samples.
 
     Returns
     -------
@@ -548,7 +548,7 @@ def _strongest(spectrum: NDArray[np.complex128], inside: slice, most: int) -> tu
 
 @lru_cache(maxsize=8)
 def _turns(size: int, first: int, last: int) -> NDArray[np.complex128]:
-    """By what lines turn over the fine parts of a sample next to a coarse one."""
+    """Return the phase factors of the lines for the fine steps about a coarse one."""
     around = _FINE // _COARSE
     parts = np.arange(-around, around + 1) / _FINE
     return np.asarray(np.exp(2j * np.pi / size * np.outer(np.arange(first, last), parts)))
@@ -556,13 +556,13 @@ def _turns(size: int, first: int, last: int) -> NDArray[np.complex128]:
 
 @lru_cache(maxsize=8)
 def _weights(size: int, rate: float) -> tuple[Array, Array]:
-    """Octaves from the middle of the reference band [-], and a taper towards its ends [-]."""
+    """Return the octaves from 700 Hz [-] and a taper [-] over the reference band."""
     frequency = np.fft.rfftfreq(size, 1.0 / rate)[_bins(_REFERENCE_BAND, size, rate)]
     return np.log2(frequency / 700.0), np.hanning(frequency.size) ** 0.25
 
 
 def _echo(answer: Array, rate: float) -> Numbers:
-    """Tell what comes back at certain times from what rings at certain frequencies."""
+    """Describe the late part of an impulse response: single echoes, and ringing at a frequency."""
     first = int(_ECHO[0] * rate)
     late = answer[first : int(_ECHO[1] * rate)]
     size = np.abs(late)
@@ -580,7 +580,7 @@ def _echo(answer: Array, rate: float) -> Numbers:
 
 
 def _by_time(p: Array, m: Array, residual: Array) -> Numbers:
-    """Size of the residual, and how unevenly it comes."""
+    """Return the size of the residual, and its kurtosis."""
     return {
         "residual": math.log(float(residual.std()) / (float(m.std()) + 1e-12) + 1e-9),
         "residual_kurtosis": math.log(_kurtosis(residual)),
@@ -589,7 +589,7 @@ def _by_time(p: Array, m: Array, residual: Array) -> Numbers:
 
 
 def _impacts(residual: Array, rate: float, slips: Array) -> Numbers:
-    """Level of the residual in short segments above and below 2.5 kHz, and after slips."""
+    """Return levels of the residual in short segments above and below 2.5 kHz, and after slips."""
     spectra = segment_spectra(residual, _SHORT)
     bins = [_bins(band, _SHORT, rate) for band in (_LOW, (_LOW[1], min(_HIGHEST, USABLE * rate)))]
     first, last = np.array([[inside.start, inside.stop] for inside in bins]).T

@@ -1,26 +1,20 @@
-"""Contact in numbers that no phase enters: stick, slips, cycles, the torque as such.
+"""Numbers of the contact that do not depend on phase: stick, slip, mean cycle, torque.
 
-All come from a `Reconstruction` and are relative to what the rig file says of the condition, so
-that a rig as its file describes it has much the same numbers whatever its fit and speed:
+All are computed from a `Reconstruction` and are relative to the values of the rig file, so that a
+rig as its file describes it has about the same numbers at every interference and speed:
 
-- stick: how fast the surface creeps, by how near the torque is to the critical one; what of that
+- stick: creep speed as a function of the torque over the critical torque, and the part of it that
   another stiffness, damping or inertia would explain;
-- slip: friction torque by sliding speed, on the way up and on the way down;
-- cycles: peak, drop, duration and interval, their scatter, memory and drift, and how the peak
-  depends on the time in stick;
+- slip: friction torque as a function of sliding speed, separately while the speed rises and falls,
+  since a contact with memory has two branches; level, slope and bend fitted to all samples scatter
+  less than the classes of speed;
+- cycles: peak, drop, duration and interval; their scatter, memory and drift; the dependence of the
+  peak on the time in stick;
+- mean cycle: averages at fixed times from the start of a slip or from the catch, in which noise and
+  scatter cancel. Ringing in stick gives the elastomer's stiffness at some hundred hertz, the torque
+  over a whole stick that at a few hertz. A wrong parameter changes both alike, a stiffness that
+  depends on frequency does not;
 - torque: mean, spread, drift and extremes.
-
-Slips of a contact in numbers: the mean cycle, and the friction torque over the sliding speed.
-
-Averaged over all cycles at fixed times from the slip's start or the catch, noise and scatter fall
-away while the shape stays: how the contact lets go, how far the torque falls, at which frequency
-and how long the bushing rings. What rings while the surface sticks tells the elastomer's stiffness
-at some hundred hertz, what the torque does over a whole stick that at a few: one changed parameter
-moves both alike, a stiffness that depends on frequency does not.
-
-Of the friction torque the way up and the way down of a slip are separate, since a contact with a
-memory has another torque on either. A fitted level, slope and bend use all samples at once and
-scatter less than the classes do.
 """
 
 from __future__ import annotations
@@ -37,16 +31,16 @@ from noise.diagnosis.evidence.channel_summary import quantile
 from noise.diagnosis.evidence.reconstruction import Reconstruction
 
 _BEFORE = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
-"""Times before a slip starts at which the torque is looked at [s]."""
+"""Times before the start of a slip [s]."""
 
 _AFTER = (3e-4, 6e-4, 9e-4, 1.2e-3, 1.6e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4.2e-3, 5e-3, 6e-3, 8e-3)
-"""Times after the surface is caught [s]."""
+"""Times after the surface sticks again [s]."""
 
 _MARGIN = 6e-4
-"""Of a stick at either end, which the band limit smears the slip into [s]; assumed."""
+"""Left out at both ends of a stick, since the band limit smears the slip [s]; assumed."""
 
 _SLIP_SUMMARY_FEWEST = 4
-"""Cycles, or samples of ringing per unknown, that make a mean; assumed."""
+"""Fewest cycles of a mean; assumed."""
 
 
 def cycle_shape(
@@ -58,21 +52,21 @@ def cycle_shape(
     ----------
     motion : Reconstruction
     fit : Fit
-        As the rig file has it.
+        Values of the rig file.
     starts, ends : ndarray of int, shape (n_slips,)
-        Samples at which the surface begins to slip, and at which it is caught.
+        Samples at which the surface begins to slip, and at which it sticks again.
 
     Returns
     -------
     dict of str to float
-        Torques over the critical one, speeds over that of the shaft, relative changes of stiffness,
-        damping and inertia [-]; a time that hardly any cycle reaches is left out.
+        Torques over the critical torque, speeds over that of the shaft, relative changes of
+        stiffness, damping and inertia [-]. Times that fewer than four cycles reach are left out.
     """
     if starts.size < _SLIP_SUMMARY_FEWEST:
         return {}
     rate = motion.rate
     before, after = (np.array([round(t * rate) for t in times]) for times in (_BEFORE, _AFTER))
-    # Where another slip is, a time does not count.
+    # Times that fall into another slip do not count.
     earlier, later = np.append(0, ends[:-1]), np.append(starts[1:], motion.torque.size)
     places = {f"before_{i}": (starts - by)[starts - by > earlier] for i, by in enumerate(before)}
     places |= {f"after_{i}": (ends + by)[ends + by < later] for i, by in enumerate(after)}
@@ -88,10 +82,9 @@ def cycle_shape(
 def _ringing(
     motion: Reconstruction, starts: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> dict[str, float]:
-    """Find what explains the creep within sticks, and what their means.
+    """Fit errors of stiffness, damping and inertia to the apparent sliding within sticks.
 
-    In stick the surface moves with the shaft; what it seems to slide is linear in the errors of
-    stiffness, damping and inertia.
+    In stick the surface moves with the shaft. Apparent sliding is linear in these errors.
     """
     margin = round(_MARGIN * motion.rate)
     first, last = ends[:-1] + margin, starts[1:] - margin
@@ -106,7 +99,7 @@ def _ringing(
     sums = np.sum([x.sum(axis=1) for x in sticks], axis=0)
     rings = np.concatenate([x - x.mean(axis=1, keepdims=True) for x in sticks], axis=1)
     products = rings @ rings.T
-    spreads = np.sqrt(np.diag(products) / rings.shape[1])  # their means are 0
+    spreads = np.sqrt(np.diag(products) / rings.shape[1])  # the means are 0
     numbers = {
         "slow_stiffness": float(sums[0] / (sums[1] + 1e-9)),
         "ring": math.log(float(spreads[1]) + 1e-3),
@@ -125,16 +118,16 @@ def _ringing(
 
 
 _SPEED_EDGES = np.array([2.0, 5.0, 9.0, 14.0, 20.0, 28.0, 40.0])
-"""Of classes of the sliding speed [rad/s]."""
+"""Limits of the classes of sliding speed [rad/s]."""
 
 _FITTED = (3.0, 40.0)
-"""Sliding speeds over which the law is fitted [rad/s]; assumed."""
+"""Range of sliding speed of the fitted law [rad/s]; assumed."""
 
 _FEWEST_SAMPLES = 8
-"""Samples that make a mean; assumed."""
+"""Fewest samples of a mean; assumed."""
 
 _ENOUGH = 60
-"""Samples that make a law; assumed."""
+"""Fewest samples of a fitted law; assumed."""
 
 
 def torque_by_speed(
@@ -146,14 +139,14 @@ def torque_by_speed(
     ----------
     motion : Reconstruction
     fit : Fit
-        As the rig file has it.
+        Values of the rig file.
     slipping : ndarray of bool, shape (n,)
-        When the contact slips.
+        Whether the contact slips.
 
     Returns
     -------
     dict of str to float
-        Torques over the kinetic one of the rig file [-].
+        Torques over the kinetic torque of the rig file [-].
     """
     sliding = motion.sliding_speed
     faster = (np.append(sliding[1:], sliding[-1]) > np.append(sliding[0], sliding[:-1]))[slipping]
@@ -178,7 +171,7 @@ def torque_by_speed(
 
 
 def _classed(values: Array, by: Array, edges: Array) -> list[Array]:
-    """Values of each class that something else lies in."""
+    """Return the values whose `by` lies between each two edges."""
     place = np.searchsorted(edges, by, side="right")
     return [values[place == i] for i in range(1, edges.size)]
 
@@ -186,23 +179,23 @@ def _classed(values: Array, by: Array, edges: Array) -> list[Array]:
 Numbers = dict[str, float]
 
 _TORQUE_EDGES = np.array([0.0, 0.5, 0.65, 0.8, 0.92, 1.1])
-"""Of classes of the friction torque over the critical one."""
+"""Limits of the classes of friction torque over critical torque [-]."""
 
 _EXPLANATIONS: tuple[str, ...] = ("speed", "stiffness", "softening", "damping", "clamp", "release")
-"""Of what sliding there seems to be in stick: another speed, stiffness, damping or inertia, a
-stiffness that changes with torque, or a contact that gives before it breaks."""
+"""Explanations of apparent sliding in stick: another speed, stiffness, damping or inertia, a
+stiffness that changes with torque, or a contact that yields before it breaks."""
 
 _FEWEST = 8
-"""Samples that make a mean; assumed."""
+"""Fewest samples of a mean; assumed."""
 
 _APART = 2e-4
-"""Slips closer than this are one [s]; assumed."""
+"""Slips closer than this are merged [s]; assumed."""
 
 _AROUND = 4e-4
-"""What the band limit smears a slip over on either side [s]; assumed."""
+"""Length by which the band limit smears a slip on either side [s]; assumed."""
 
 _NEAR_PEAK = 6e-4
-"""In which the torque's peak before and its trough after a slip are looked for [s]; assumed."""
+"""Range in which the peak before and the trough after a slip are searched [s]; assumed."""
 
 
 def slip_starts(
@@ -214,12 +207,12 @@ def slip_starts(
     ----------
     motion : Reconstruction
     speed : float
-        Of the shaft, as set [rad/s].
+        Set speed of the shaft [rad/s].
 
     Returns
     -------
     starts, ends : ndarray of int, shape (n_slips,)
-        Samples of the reconstruction at which the surface begins to slip, and at which it is caught
+        Samples of the reconstruction at which the surface begins to slip, and at which it sticks
         again.
     """
     wanted = abs(speed)
@@ -232,22 +225,22 @@ def slip_starts(
 
 
 def contact_summary(motion: Reconstruction, fit: Fit, speed: float) -> Numbers:
-    """Summarise what the contact did.
+    """Summarise the motion and the torque of the contact.
 
     Parameters
     ----------
     motion : Reconstruction
     fit : Fit
-        As the rig file has it.
+        Values of the rig file.
     speed : float
-        Of the shaft, as set [rad/s].
+        Set speed of the shaft [rad/s].
 
     Returns
     -------
     dict of str to float
-        Torques over the file's critical or kinetic one and speeds over the shaft's [-], speeds
-        within a slip [rad/s]; times and rates as logarithms of seconds and 1/s. NaN, or missing,
-        where a recording does not show it.
+        Torques over the critical or kinetic torque of the rig file and speeds over that of the
+        shaft [-], speeds within a slip [rad/s]; times and rates as logarithms of seconds and 1/s.
+        NaN, or left out, where a recording does not show it.
     """
     starts, ends = slip_starts(motion, speed)
     n = motion.torque.size

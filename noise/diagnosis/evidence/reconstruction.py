@@ -1,14 +1,14 @@
-"""Friction torque, which no sensor sees, rebuilt from the torque of the cell.
+"""Friction torque and sliding speed, which no sensor measures, reconstructed from the torque cell.
 
 The torque cell reads T = k_E (theta1 - theta2) + c (theta1' - theta2'), the elastomer's torque on
 the clamp. The clamp's angle follows from it by the clamp's own equation (Figure 4.1),
 J_C theta2'' + c_B theta2' + k_B theta2 = T, the elastomer's twist by the first one, and with the
 surface's acceleration the torque in the contact is T_F = T + J_E theta1''. So drive, contact and
-elastomer can be looked at sample by sample, without a simulation whose phase wanders off.
-Differentiation makes noise of what the cell does not resolve, so everything is band-limited to
-`LIMIT`; the clamp's free decay from before the recording is not known, so `LEAD` is left out.
+elastomer can be compared sample by sample, without a simulation whose phase drifts. Differentiation
+amplifies noise of the cell, so everything is band-limited to `LIMIT`. The clamp's free decay from
+before the recording is unknown, so `LEAD` is left out.
 
-The shaft's speed, and how evenly it turns, follow from its angle.
+The speed of the shaft, and its unevenness, follow from the angle.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from noise.base.arrays import Array
 from sim.bushing import LumpedBushing
 
 _SPEED_LIMIT = 60.0
-"""The shaft's speed follows its angle up to so many hertz, half as much again fading."""
+"""Pass band of the shaft's speed; it fades out up to twice this frequency [Hz]."""
 
 
 def angle_summary(angle: Array, speed: float, rate: float) -> dict[str, float]:
-    """Summarise how evenly the shaft turns.
+    """Summarise the speed of the shaft and its unevenness.
 
     Parameters
     ----------
     angle : ndarray, shape (n,)
         [rad], rising.
     speed : float
-        As set [rad/s].
+        Set speed [rad/s].
     rate : float
         Sampling rate [Hz].
 
     Returns
     -------
     dict of str to float
-        Speeds as logarithms of their ratio to `speed` [-], ``unevenness`` that of an angle in
-        radian, ``speed_line_at`` that of a frequency in hertz.
+        Logarithms of speeds over `speed` [-]; ``unevenness`` is that of an angle in radian,
+        ``speed_line_at`` that of a frequency in hertz.
 
     Examples
     --------
@@ -76,7 +76,7 @@ def angle_summary(angle: Array, speed: float, rate: float) -> dict[str, float]:
 
 
 def shaft_speed(angle: Array, rate: float) -> Array:
-    """Speed of the shaft from its angle, below 60 Hz.
+    """Return the speed of the shaft from its angle, below 60 Hz.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def shaft_speed(angle: Array, rate: float) -> Array:
     """
     n = angle.size
     mean_speed, left = _about_line(angle, rate)
-    # Turned about its ends, so that neither its value nor its slope jumps there.
+    # Odd extension at both ends, so that neither value nor slope jumps there.
     m = min(round(0.05 * rate), n - 1)
     before, after = 2.0 * left[0] - left[m:0:-1], 2.0 * left[-1] - left[-2 : -m - 2 : -1]
     extended = np.concatenate([before, left, after])
@@ -123,7 +123,7 @@ def _slow_derivative(length: int, rate: float) -> NDArray[np.complex128]:
 
 
 def _about_line(angle: Array, rate: float) -> tuple[float, Array]:
-    """Mean speed [rad/s], and what the angle has besides [rad]."""
+    """Return the mean speed [rad/s], and the angle less the fitted line [rad]."""
     time = (np.arange(angle.size, dtype=np.float64) - 0.5 * (angle.size - 1)) / rate
     left = angle - angle.mean()
     speed = float(time @ left) / float(time @ time)
@@ -136,16 +136,16 @@ LIMIT = 8000.0
 assumed."""
 
 LEAD = 0.06
-"""Left out at the start, where the clamp still rings from before the recording [s]; assumed."""
+"""Left out at the start, where earlier vibration of the clamp still decays [s]; assumed."""
 
 TAIL = 0.01
-"""Left out at the end, where the band limit has nothing to look at [s]; assumed."""
+"""Left out at the end, where the band limit lacks later samples [s]; assumed."""
 
 _LEAST_RATE = 24e3
-"""To which a motion is thinned out, above twice the end of the band limit [Hz]."""
+"""Least sampling rate of a reconstruction, above twice the end of the band limit [Hz]."""
 
 _WAY_BACK = 0.25
-"""In which a signal is led back to where it began, as a transform has it do [s]."""
+"""Length over which a signal returns to its first value, for a periodic transform [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,11 +155,11 @@ class Reconstruction:
     Parameters
     ----------
     rate : float
-        [Hz], that of the recording or a half or quarter of it.
+        Sampling rate: that of the recording, or a half or quarter of it [Hz].
     start : float
         Time of the first sample within the recording [s].
     torque, friction_torque : ndarray, shape (n,)
-        In the cell, and in the contact [Nm].
+        In the torque cell, and in the contact [Nm].
     torque_rate : ndarray, shape (n,)
         [Nm/s]
     shaft_speed, sliding_speed : ndarray, shape (n,)
@@ -167,8 +167,8 @@ class Reconstruction:
     clamp_speed : ndarray, shape (n,)
         [rad/s]
     by_stiffness, by_damping, by_clamp : ndarray, shape (n,)
-        By how much the sliding speed would be more were the elastomer's stiffness, all damping or
-        the clamp's inertia greater, per relative change [rad/s].
+        Change of the sliding speed per relative change of the elastomer's stiffness, of all damping
+        and of the clamp's inertia [rad/s].
     """
 
     rate: float
@@ -191,7 +191,7 @@ def reconstruct(
     bushing: LumpedBushing,
     spectrum: NDArray[np.complex128] | None = None,
 ) -> Reconstruction:
-    """Rebuild the contact's torque and sliding speed from the torque that was measured.
+    """Reconstruct friction torque and sliding speed from the measured torque.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def reconstruct(
         [Hz]
     bushing : LumpedBushing
     spectrum : ndarray of complex, optional
-        Of the torque, where it is known already, as `closed_spectrum` gives it [Nm].
+        Spectrum of the torque, if it is known already, as `closed_spectrum` returns it [Nm].
 
     Returns
     -------
@@ -227,7 +227,7 @@ def reconstruct(
     if spectrum is None:
         spectrum = closed_spectrum(torque, rate)
     length = closed_length(n, rate)
-    # of so many samples one is enough for what the band limit leaves
+    # the band limit permits a lower sampling rate
     every = next(k for k in (4, 2, 1) if k == 1 or (rate >= k * _LEAST_RATE and length % k == 0))
     rate /= every
     inside = slice(round(LEAD * rate), n // every - round(TAIL * rate))
@@ -258,9 +258,9 @@ def reconstruct(
 
 @lru_cache(maxsize=6)
 def _filters(length: int, rate: float, bushing: LumpedBushing) -> NDArray[np.complex128]:
-    """Transfer functions from the torque to all that is rebuilt, up to the end of the low-pass.
+    """Return the transfer functions from torque to each reconstructed signal.
 
-    Those of a clamp that moves come last.
+    They end with the low-pass. Those of a clamp that moves come last.
     """
     frequency = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
     low_pass = _low_pass(frequency, rate)
@@ -288,7 +288,7 @@ def _filters(length: int, rate: float, bushing: LumpedBushing) -> NDArray[np.com
 
 
 def closed_spectrum(signal: Array, rate: float) -> NDArray[np.complex128]:
-    """Transform of a signal that `closed_loop` has led back to its start.
+    """Return the transform of a signal that `closed_loop` has extended.
 
     Parameters
     ----------
@@ -311,7 +311,7 @@ def closed_spectrum(signal: Array, rate: float) -> NDArray[np.complex128]:
 
 
 def closed_length(n: int, rate: float) -> int:
-    """Return how many samples `closed_loop` makes of `n` at a sampling rate [Hz].
+    """Return the length of the signal that `closed_loop` returns, at a sampling rate [Hz].
 
     Examples
     --------
@@ -322,7 +322,7 @@ def closed_length(n: int, rate: float) -> int:
 
 
 def closed_loop(signal: Array, rate: float) -> Array:
-    """Lead a signal back to its start along half a cosine, so that a transform sees no step.
+    """Extend a signal by half a cosine back to its first value, so that it has no step.
 
     Parameters
     ----------

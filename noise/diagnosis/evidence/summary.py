@@ -1,16 +1,16 @@
-"""Summary of a recording in some four hundred numbers, table of those of a case, and its row.
+"""Evidence of a case: some five hundred numbers per recording, and one row per case.
 
-A *case* is what a user brings: recordings of one rig over several conditions, and its file. Each
-number is taken from the recording and from simulated repeats of its condition.
+A *case* is what a user brings: recordings of one rig at several conditions, and its rig file. Each
+number is computed from the recording and from simulated repeats of its condition.
 
-From the table a case becomes one row, of which the posterior is computed. Each number of a
-recording becomes its difference from the rig file's simulation, in units of what it scatters by on
-this bench: what simulated repeats differ by (over all conditions of the case, since a few of one
-say little), and what gains and hammer tests of quiet benches add to that (`scale`). Over the
-recordings of a case these things count: how large the difference is in the middle, in its own unit
-and in that, how sure it is, how it spreads, where it is largest, whether it grows with speed, and
-how much repeats of one condition differ; beside them what was measured, and what bench it was, in a
-few numbers: its sensors, lengths, responses, law and listed effects.
+The posterior needs one row per case. First each number of a recording becomes a deviation: its
+difference from the simulation with the rig file, divided by its scatter on this bench. The scatter
+combines the differences between simulated repeats (pooled over all conditions of the case, since
+there are few per condition) and the scatter that gains and hammer tests add on quiet benches
+(`scale`). Then the deviations are summarised over the recordings of the case: median difference in
+its own unit and in units of the scatter, mean in units of its standard error, spread, largest
+value, trend with speed, and difference between repeats of one condition. The row also holds the
+measured values and a few numbers on the bench: sensors, lengths, responses, law, listed effects.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ from sim.effects.effect import Effect
 Numbers = dict[str, float]
 
 N_REPEATS = 3
-"""Simulated repeats a condition; what a case may cost settles it; assumed."""
+"""Simulated repeats per condition; a compromise with computing time; assumed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,15 +67,15 @@ class CaseTable:
     Parameters
     ----------
     names : tuple of str
-        Of the columns.
+        Names of the columns.
     measured, nominal, scatter : ndarray, shape (n_recordings, n_numbers)
-        Of the recordings; mean and standard deviation of simulated repeats. NaN where undefined
-        [unit of the number].
+        Numbers of the recordings; mean and standard deviation of simulated repeats. NaN where
+        undefined [unit of the number].
     conditions : tuple of Condition
     rate : float
-        Sampling rate of the recordings, the middle one where they differ [Hz].
+        Sampling rate of the recordings, the median where they differ [Hz].
     bench : mapping of str to float
-        As `bench_context` gives it.
+        As `bench_context` returns it.
     """
 
     names: tuple[str, ...]
@@ -90,7 +90,7 @@ class CaseTable:
 def summary(
     recording: Recording, rig: Rig, transfer_functions: Mapping[str, TransferFunction]
 ) -> Numbers:
-    """Summarise a recording against the rig that it is said to be of.
+    """Summarise a recording, given the rig of its rig file.
 
     Parameters
     ----------
@@ -98,17 +98,17 @@ def summary(
         With speed, interference and support stiffness in its condition.
     rig : Rig
     transfer_functions : mapping of str to TransferFunction
-        As `torque_transfer_functions` gives them.
+        As `torque_transfer_functions` returns them.
 
     Returns
     -------
     dict of str to float
-        What a missing channel would tell is missing [unit of the number].
+        Numbers that need a missing channel are left out [unit of the number].
     """
     condition, rate = known_condition(recording.condition), recording.rate
     signal = signals_of(recording)
     numbers: Numbers = {}
-    # Torque and motion change sign together: what turns backwards is looked at from behind.
+    # Torque and motion change sign together, so a shaft that turns backwards is mirrored.
     turn, wanted = math.copysign(1.0, condition.speed), abs(condition.speed)
     speed = np.full(recording.samples.shape[1], wanted)
     if "angle" in signal:
@@ -163,27 +163,27 @@ def path_numbers(
     transfer_functions: Mapping[str, TransferFunction],
     slips: Array,
 ) -> tuple[Numbers, dict[str, Array]]:
-    """Compare acceleration and sound with what the torque should have made of them.
+    """Compare acceleration and sound with their predictions from the measured torque.
 
     Parameters
     ----------
     signal : mapping of str to ndarray, shape (n,)
         By kind of channel [unit of the channel].
     spectrum : ndarray of complex
-        Of the torque, as `closed_spectrum` gives it [Nm].
+        Spectrum of the torque, as `closed_spectrum` returns it [Nm].
     rate : float
         Sampling rate [Hz].
     transfer_functions : mapping of str to TransferFunction
-        As `torque_transfer_functions` gives them.
+        As `torque_transfer_functions` returns them.
     slips : ndarray, shape (n_slips,)
-        When the contact slips [s].
+        Times at which the contact begins to slip [s].
 
     Returns
     -------
     dict of str to float
         [unit of the number]
     dict of str to ndarray, shape (n,)
-        What the torque does not make, by kind of channel [unit of the channel].
+        Measured less predicted, by kind of channel [unit of the channel].
     """
     numbers: Numbers = {}
     residuals = {}
@@ -196,7 +196,7 @@ def path_numbers(
 
 @dataclass(frozen=True, eq=False)
 class NominalNumbers:
-    """What the numbers of recordings would be were the rig as its file has it; simulated once.
+    """Numbers of simulated repeats of a rig; each condition is simulated once and stored.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ class NominalNumbers:
     library : mapping of str to Effect, optional
         Definitions of the effects of the rig, by name.
     seed : int
-        Of the repeats.
+        Seed of the repeats.
     """
 
     rig: Rig
@@ -214,14 +214,14 @@ class NominalNumbers:
 
     @cached_property
     def transfer_functions(self) -> TransferFunctionCache:
-        """The rig's, each looked up once."""
+        """Transfer functions of the rig."""
         return TransferFunctionCache(self.rig, self.library)
 
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
         """Mean and standard deviation over simulated repeats of a recording's condition."""
         key = (*condition_key(recording), recording.channel_names)
         if key not in self._moments:
-            # Conditions share no repeat's rig: it would err in all of them alike.
+            # Each condition has its own perturbed rigs: a shared one would err alike in all.
             seeds = np.random.SeedSequence([self.seed, len(self._moments)]).generate_state(
                 N_REPEATS
             )
@@ -253,9 +253,9 @@ def case_table(
     library : mapping of str to Effect, optional
         Definitions of the effects of the rig, by name.
     seed : int
-        Of the repeats.
+        Seed of the repeats.
     nominal : NominalNumbers, optional
-        Those of this rig, where several cases are of it.
+        Repeats of this rig that other cases have simulated already.
 
     Returns
     -------
@@ -293,7 +293,7 @@ def same_channels(repeat: Recording, recording: Recording) -> Recording:
     Returns
     -------
     Recording
-        Of the former, with the channels of kinds that the latter has.
+        The repeat, with the kinds of channel that `recording` has.
     """
     rows = [i for i, c in enumerate(repeat.channels) if recording.first(c.kind) is not None]
     return replace(
@@ -314,7 +314,7 @@ def _mean_and_deviation(repeats: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
 
 
 def column_moments(values: Array) -> tuple[Array, Array]:
-    """Return mean and standard deviation of each column over what is known of it.
+    """Return mean and standard deviation of the finite values of each column.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def column_moments(values: Array) -> tuple[Array, Array]:
     Returns
     -------
     mean, spread : ndarray, shape (n_columns,)
-        NaN where nothing is known, and of the spread where one row alone is [unit of the column].
+        NaN without a finite value; the spread is NaN with only one [unit of the column].
 
     Examples
     --------
@@ -347,28 +347,28 @@ CONTEXT = (
     *(f"{kind}_noise" for kind in CHANNELS), *(f"{kind}_step" for kind in CHANNELS),
     "seconds", "coherence", "constant_law", "listed",
 )  # fmt: skip
-"""Names of the numbers, in their order."""
+"""Names of the numbers on the bench, in the order of the row."""
 
 _BAND = (100.0, 3000.0)
-"""In which a hammer test's coherence is looked at [Hz]; assumed."""
+"""Band of the coherence of a hammer test [Hz]; assumed."""
 
 
 def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]:
-    """Say what bench a case is from.
+    """Describe the bench of a case in a few numbers.
 
     Parameters
     ----------
     rig : Rig
-        With the sensors that simulated repeats go through.
+        With the sensors of the simulated repeats.
     recordings : sequence of Recording
 
     Returns
     -------
     dict of str to float
-        By `CONTEXT`: noise over that of good sensors, as a logarithm; a converter's step over that
-        noise [-]; length of a recording [s]; share of a measured response that is no answer to the
-        hammer, 1 where none was measured; whether the law is the constant one, and how many effects
-        are listed. What is missing is unknown.
+        Some or all of `CONTEXT`: logarithm of the noise over that of good sensors [-]; step of a
+        converter over that noise [-]; length of a recording [s]; what the coherence of measured
+        responses lacks of 1, or 1 without any [-]; whether the friction law is the constant one;
+        number of listed effects.
 
     Examples
     --------
@@ -395,18 +395,19 @@ def bench_context(rig: Rig, recordings: Sequence[Recording]) -> dict[str, float]
 
 
 def lacking_coherence(rig: Rig, recordings: Sequence[Recording]) -> float:
-    """Median of what the coherence of the supports' measured responses lacks of 1.
+    """Return what the median coherence of the measured responses lacks of 1.
 
     Parameters
     ----------
     rig : Rig
     recordings : sequence of Recording
-        Whose supports' responses are looked at.
+        Only responses of their supports count.
 
     Returns
     -------
     float
-        Of the worst of them [-]: 0 where it is unknown, 1 where no response was measured.
+        Of the response with the lowest coherence [-]: 0 where coherence was not stated, 1 where no
+        response was measured.
     """
     supports = [r.condition.support_stiffness for r in recordings]
     responses = [
@@ -428,24 +429,24 @@ def lacking_coherence(rig: Rig, recordings: Sequence[Recording]) -> float:
 
 
 PARTS = ("middle", "sure", "spread", "largest", "with_speed", "repeats", "as_is")
-"""Of each number's differences over the recordings of a case, in the order of the row."""
+"""Summaries of the deviations of a number over the recordings, in the order of the row."""
 
 _COUNTS = ("recordings", "rate", "conditions")
 
 MISSING = -999.0
-"""Stands for what a case does not show; a tree splits it off."""
+"""Value of what is undefined in a case; a tree separates it by a split."""
 
 LARGEST = 1e4
-"""Larger numbers are all alike; assumed."""
+"""Limit of deviations [-]; assumed."""
 
 _LEAST_SCALE = 1e-3
 _LEAST_SHARE = 1e-2
-"""A number that hardly scatters has at least this share of its size as its scale; assumed, as is
-the least scale of any number."""
+"""Least scale of a number, as a share of its typical size [-]; assumed, as is the absolute least
+scale."""
 
 _OWN = 1.0 / 3.0
-"""How much the scatter at a recording's own condition counts, beside that at all conditions;
-assumed."""
+"""Weight of the scatter at the recording's own condition; the rest is that over all conditions
+[-]; assumed."""
 
 
 def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
@@ -454,13 +455,13 @@ def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
     Parameters
     ----------
     names : sequence of str
-        Of the numbers that count.
+        Names of the numbers.
 
     Returns
     -------
     tuple of str
-        Part and number, part by part; how many recordings and conditions there are, and their
-        rate; the bench; and the typical size of each number's difference.
+        ``part:number`` for each of `PARTS`; number of recordings, sampling rate, number of
+        conditions; `CONTEXT`; and ``typical:number``.
 
     Examples
     --------
@@ -472,7 +473,7 @@ def evidence_names(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def aligned(table: CaseTable, names: Sequence[str]) -> tuple[Array, ...]:
-    """Numbers of a case in the order of names.
+    """Return the numbers of a case in a given order.
 
     Parameters
     ----------
@@ -482,8 +483,7 @@ def aligned(table: CaseTable, names: Sequence[str]) -> tuple[Array, ...]:
     Returns
     -------
     measured, nominal, scatter : ndarray, shape (n_recordings, n_names)
-        NaN where the case has none of that name [unit of the
-        number].
+        NaN where the case has no such number [unit of the number].
 
     Examples
     --------
@@ -512,19 +512,19 @@ def _columns(of_table: tuple[str, ...], names: tuple[str, ...]) -> NDArray[np.in
 
 
 def scale_of(tables: Sequence[CaseTable], names: Sequence[str]) -> Array:
-    """Scatter of each number about its nominal value that simulated repeats do not have.
+    """Return the scatter of each number beyond that of simulated repeats.
 
     Parameters
     ----------
     tables : sequence of CaseTable
-        Cases without a cause, of quiet benches: what noise does on others, repeats have as well.
+        Cases without a cause on quiet benches. On others, repeats include the noise as well.
     names : sequence of str
 
     Returns
     -------
     ndarray, shape (n_names,)
-        Half of what lies between the 16th and the 84th percentile, less what repeats differ by
-        [unit of the number].
+        Half of the distance between the 16th and the 84th percentile, less the scatter of repeats
+        in quadrature [unit of the number].
     """
     rows = [aligned(table, names) for table in tables]
     away = np.concatenate([measured - nominal for measured, nominal, _ in rows])
@@ -547,15 +547,15 @@ def evidence(table: CaseTable, names: Sequence[str], scale: Array) -> NDArray[np
     ----------
     table : CaseTable
     names : sequence of str
-        Of the numbers that count.
+        Names of the numbers.
     scale : ndarray, shape (n_names,)
-        As `scale_of` gives it.
+        As `scale_of` returns it.
 
     Returns
     -------
     ndarray of float32, shape (n_columns,)
-        By `evidence_names`; `MISSING` where undefined; differences over scatter [-], but
-        ``middle`` and ``as_is`` in the unit of the number.
+        Columns as in `evidence_names`; `MISSING` where undefined; deviations in units of the
+        scatter [-], but ``middle`` and ``as_is`` in the unit of the number.
     """
     measured, nominal, scatter = aligned(table, names)
     away = measured - nominal
@@ -585,15 +585,15 @@ def evidence(table: CaseTable, names: Sequence[str], scale: Array) -> NDArray[np
 
 
 def deviations(table: CaseTable, names: Sequence[str], scale: Array) -> Array:
-    """Differences of a case from its nominal numbers, over what they scatter by.
+    """Return the deviations of a case from its nominal numbers, in units of their scatter.
 
     Parameters
     ----------
     table : CaseTable
     names : sequence of str
-        Of the numbers that count.
+        Names of the numbers.
     scale : ndarray, shape (n_names,)
-        As `scale_of` gives it.
+        As `scale_of` returns it.
 
     Returns
     -------
@@ -605,7 +605,7 @@ def deviations(table: CaseTable, names: Sequence[str], scale: Array) -> Array:
 
 
 def standard_errors(deviation: Array) -> Array:
-    """Mean over recordings, in units of its standard error.
+    """Return the mean over recordings, in units of its standard error.
 
     Parameters
     ----------
@@ -615,7 +615,7 @@ def standard_errors(deviation: Array) -> Array:
     Returns
     -------
     ndarray, shape (n_names,)
-        [-], 0 where nothing is known.
+        [-], 0 without a finite value.
 
     Examples
     --------
@@ -627,7 +627,7 @@ def standard_errors(deviation: Array) -> Array:
 
 
 def _pooled(scatter: Array) -> Array:
-    """Scatter of repeats, drawn towards that over all recordings of a case; 0 where unknown."""
+    """Return the scatter of repeats, shrunk towards that of all recordings; 0 if unknown."""
     square = np.square(scatter)
     everywhere = np.nan_to_num(_mean(square))
     own = np.where(np.isnan(square), everywhere, square)
@@ -635,7 +635,7 @@ def _pooled(scatter: Array) -> Array:
 
 
 def _mean(rows: Array) -> Array:
-    """Mean of each column over what is known; NaN where nothing is."""
+    """Return the mean of the finite values of each column; NaN without any."""
     known = ~np.isnan(rows)
     count = known.sum(axis=0)
     total = np.where(known, rows, 0.0).sum(axis=0)
@@ -643,8 +643,8 @@ def _mean(rows: Array) -> Array:
 
 
 def _middle(rows: Array) -> Array:
-    """Median of each column over what is known; NaN where nothing is."""
-    ordered = np.sort(rows, axis=0)  # what is unknown comes last
+    """Return the median of the finite values of each column; NaN without any."""
+    ordered = np.sort(rows, axis=0)  # NaN comes last
     count = (~np.isnan(rows)).sum(axis=0)
     low, high = np.maximum(count - 1, 0) // 2, count // 2
     high = np.minimum(high, len(rows) - 1)

@@ -1,21 +1,18 @@
-"""Training of the cause posterior on simulated cases, which are drawn into files before.
+"""Training of the cause posterior on simulated cases.
 
-The trees that answer are grown on all cases. Those of four rigs of five grow others before, whose
-answers to the fifth calibrate the probabilities and set the alarm, over benches of all kinds; what
-is scored shares no draw with either. Each case is learned again from some of its recordings, since
-what is true of all of them is true of fewer, and what the trees make of the one recording that is
-left out is chance. A part is learned with channels taken away, so that fewer signals are answered
-less surely rather than wrongly.
+The cases are drawn into files first. The shipped trees are grown on all cases. Before, other trees
+are grown on four of five rigs; their answers to the cases of the fifth calibrate the probabilities
+and set the alarm, over benches of all kinds. Each case is repeated with some of its recordings, and
+some cases with some of their channels, so that the posterior is less certain, rather than wrong,
+with fewer signals. Each split of a tree chooses from a random part of the columns, since the number
+of cases is small.
 
-A split is offered a few of many columns: what is learned from few cases is limited by these, not
-by the columns.
+A file holds the cases of a range of seeds as a joblib pickle. Reading a pickle executes code, so
+read only files that you have made.
 
-A file holds the cases of a range of seeds as joblib keeps Python objects: reading it runs what it
-says, so only files of one's own are read.
-
-What takes time are simulated repeats of the rig as its file has it. The cases of a rig share them
-where they would differ by less than chance: where the noise of sensors was estimated about alike,
-and the speeds that the angle tells.
+Most time is spent on simulated repeats of the rig file. The cases of a rig share them where the
+difference is below the scatter: where the estimated noise of the sensors and the speeds that follow
+from the angle are about equal.
 """
 
 from __future__ import annotations
@@ -57,7 +54,7 @@ from noise.training.trees import as_arrays, boosted_nodes
 from sim.acquisition import Acquisition
 
 _CERTAIN = 6.0
-"""Logarithmic odds of a cause that no case has, or all have."""
+"""Log odds of a cause that no case has, or all have."""
 
 
 def grow_cause_trees(
@@ -70,14 +67,14 @@ def grow_cause_trees(
     x : ndarray of float32, shape (n, n_columns)
         [unit of each column], nothing missing.
     y : ndarray of int, shape (n, n_causes)
-        Whether each cause is at work.
+        Whether each cause is present.
     n_rounds, seed : int
-        Trees a cause, seed of the draws.
+        Trees per cause, and seed of the random draws.
 
     Returns
     -------
     BoostedTrees
-        Their scores are logarithmic odds of each cause.
+        Their scores are the log odds of each cause.
 
     Examples
     --------
@@ -102,9 +99,9 @@ def grow_cause_trees(
 
 
 FALSE_ALARMS = 0.06
-"""Share of cases without a cause that may raise the alarm, at the setting, of trees that have seen
-fewer cases than those that answer; one in sixty did of those of the second rig's development
-benches by which it was chosen."""
+"""Share of cases without a cause that may raise the alarm, by trees that were grown on fewer cases
+than the shipped ones [-]. It was chosen on development benches of the second rig, where one in
+sixty raised it."""
 
 _FEWEST_RECORDINGS = 3
 
@@ -113,12 +110,12 @@ _POOR = (
     ("torque", "angle"), ("torque", "pressure"), ("pressure", "angle"),
     ("torque", "acceleration", "pressure"),
 )  # fmt: skip
-"""Sets of channels that users have."""
+"""Sets of channels that users record."""
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """Training case with its rig, seed and the ways in which its bench is not quiet."""
+    """Training case with its rig, seed and the departures of its bench from a quiet one."""
 
     table: CaseTable
     truth: Truth
@@ -134,7 +131,7 @@ def train_posterior(cases: Sequence[Known], *, seed: int = 0, n_rounds: int = 45
     ----------
     cases : sequence of Known
     seed, n_rounds : int
-        Of all draws; trees a cause.
+        Seed of all draws; trees per cause.
 
     Returns
     -------
@@ -154,8 +151,7 @@ def train_posterior(cases: Sequence[Known], *, seed: int = 0, n_rounds: int = 45
     del rows
     columns = _telling_columns(x, y, seed)
     x = x[:, columns]
-    # Every fifth rig is kept from the trees whose answers set calibration and alarm; of those that
-    # answer afterwards none is.
+    # Every fifth rig is left out for calibration and alarm; the final trees use all rigs.
     held_out = np.unique(rigs, return_inverse=True)[1] % 5 == 0
     unseen = held_out & np.array(as_drawn)
     learned = grow_cause_trees(x[~held_out], y[~held_out], n_rounds=n_rounds, seed=seed)
@@ -175,12 +171,12 @@ def train_posterior(cases: Sequence[Known], *, seed: int = 0, n_rounds: int = 45
 
 
 def null_scale(cases: Sequence[Known], names: Sequence[str]) -> Array:
-    """Return the scatter of each number in cases without a cause, of quiet benches if possible.
+    """Return the scatter of each number in cases without a cause, on quiet benches if possible.
 
     Returns
     -------
     ndarray, shape (n_names,)
-        As of `noise.diagnosis.evidence.summary.scale_of` [unit of the number].
+        As `noise.diagnosis.evidence.summary.scale_of` returns it [unit of the number].
     """
     without_cause = [case for case in cases if case.truth.kind == "none"]
     quiet = [case for case in without_cause if not case.departures]
@@ -198,7 +194,7 @@ def _telling_columns(x: NDArray[np.float32], y: NDArray[np.int64], seed: int) ->
     ).fit(x[some], y[some])
     most = np.argsort(-forest.feature_importances_, kind="stable")[
         :1000
-    ]  # what tells nothing only blurs
+    ]  # other columns only add noise
     return np.sort(most).astype(np.int64)
 
 
@@ -221,8 +217,8 @@ def causes_of(truth: Truth) -> NDArray[np.int64]:
 def with_channels(case: Known, channels: Sequence[str]) -> Known:
     """Return a case with some of its channels only.
 
-    What is derived from a torque goes with it, what compares two channels with either; an effect
-    that acts in none of the channels is gone.
+    Numbers that need a missing channel are removed. An effect that acts in none of the remaining
+    channels is no longer a cause.
     """
     table, truth = case.table, case.truth
     retained = np.array([_is_known(name, channels) for name in table.names])
@@ -265,7 +261,7 @@ _OWN = (
     "top", "bottom", "crest", "asymmetry", "skewness", "flat", "dwell", "offset", "floor", "band",
     "raw",
 )  # fmt: skip
-"""Numbers that a channel has of itself alone."""
+"""First parts of the names of numbers that need one channel only."""
 
 
 def _is_known(name: str, channels: Sequence[str]) -> bool:
@@ -280,7 +276,7 @@ def _is_known(name: str, channels: Sequence[str]) -> bool:
 
 
 def _fitted_weights(odds: Array, y: NDArray[np.int64]) -> Array:
-    """Return a logistic regression for each cause, shrunk to that of all causes."""
+    """Return the weights of a logistic regression per cause, shrunk towards that of all causes."""
     x = odds_features(odds)
     common = _logistic(x.reshape(-1, x.shape[2]), y.reshape(-1), np.zeros(x.shape[2]), 1e-6)
     return np.array([_logistic(x[:, k], y[:, k], common, 1e-2 * len(y)) for k in range(y.shape[1])])
@@ -300,7 +296,7 @@ def _logistic(x: Array, y: NDArray[np.int64], prior: Array, stiffness: float) ->
 
 
 def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
-    """Draw cases of one rig and summarise them; those that cannot be simulated are left out.
+    """Draw and summarise cases of one rig, without those that cannot be simulated.
 
     Examples
     --------
@@ -313,7 +309,7 @@ def known_cases_of_a_rig(seeds: Sequence[int]) -> list[Known]:
     for seed in seeds:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # a response that ends early says so in each case
+                warnings.simplefilter("ignore")  # truncated responses warn in each case
                 case = draw_case(seed)
                 table = _table(case, shared)
         except BushingNoiseError:
@@ -339,17 +335,17 @@ def _table(case: DrawnCase, shared: list[_Shared]) -> CaseTable | None:
 
 @dataclass(frozen=True, eq=False)
 class _Shared(NominalNumbers):
-    """Repeats shared by several cases of a rig, and their speeds."""
+    """Simulated repeats that several cases of a rig share, and their speeds."""
 
     speeds: dict[tuple[object, ...], list[float]] = field(default_factory=dict)
 
     def serves(self, rig: Rig) -> bool:
-        """Return whether a rig agrees but for small differences of estimates."""
+        """Return whether a rig is equal but for small differences of estimated noise."""
         same = replace(rig, sensors=self.rig.sensors) == self.rig
         return same and _alike(self.rig.sensors, rig.sensors)
 
     def moments(self, recording: Recording) -> tuple[Numbers, Numbers]:
-        """Return mean and standard deviation of repeats, at a stored speed if one is near."""
+        """Return mean and standard deviation of repeats, at a stored speed if one is close."""
         c = known_condition(recording.condition)
         known = self.speeds.setdefault((c.interference, c.support_stiffness), [])
         near = min(known, key=lambda v: abs(v - c.speed), default=math.inf)
@@ -360,20 +356,20 @@ class _Shared(NominalNumbers):
 
 
 def _alike(one: Sensors, other: Sensors) -> bool:
-    """Return whether sensors agree but for small differences of estimated noise and steps."""
+    """Return whether sensors are equal but for small differences of estimated noise and steps."""
     for kind, usual in Acquisition().noise.items():
         a, b = one.of(kind), other.of(kind)
         if (a.bits, a.antialias) != (b.bits, b.antialias) or not math.isclose(a.step, b.step):
             return False
         levels = [usual if sensor.noise is None else sensor.noise for sensor in (a, b)]
-        least = 0.1 * a.step  # less than that is lost in the rounding
+        least = 0.1 * a.step  # smaller differences are lost in the rounding
         if not math.isclose(*levels, rel_tol=0.2, abs_tol=least):
             return False
     return True
 
 
 CHUNK = 40 * SHARED
-"""Seeds of a file."""
+"""Seeds per file."""
 
 
 def draw_into(folder: Path, seeds: range, workers: int = 1) -> Iterator[Path]:
@@ -383,19 +379,19 @@ def draw_into(folder: Path, seeds: range, workers: int = 1) -> Iterator[Path]:
     ----------
     folder : Path
     seeds : range
-        The first begins a rig.
+        The first is a multiple of `SHARED`.
     workers : int
-        Processes.
+        Number of processes.
 
     Yields
     ------
     Path
-        Of each file, as soon as it is there.
+        Path of each file, as soon as it is written.
 
     Raises
     ------
     ParameterError
-        The folder cannot be written to.
+        If the folder cannot be written to.
     """
     check_target(folder / "cases", "--out")
     chunks = [seeds[i : i + CHUNK] for i in range(0, len(seeds), CHUNK)]
@@ -419,7 +415,7 @@ def load_cases(folder: Path) -> list[Known]:
     Raises
     ------
     ParameterError
-        There are no such files, or one is damaged.
+        If there are no such files, or one is damaged.
     """
     paths = sorted(folder.glob("cases-*.joblib"))
     if not paths:

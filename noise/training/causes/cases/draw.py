@@ -1,8 +1,8 @@
-"""Cases: recordings of simulated rigs with a known cause, made as a user would record them.
+"""Training cases: recordings of simulated rigs with a known cause.
 
-Whatever is not the case's cause is drawn alike for all causes: the rig, its conditions, its
-structure, the scatter from run to run, gains, noise and drift. `SHARED` cases in a row are of one
-rig: what the rig file predicts of it is then simulated once for all of them.
+All else has the same distribution for all causes: the rig, its conditions, its structure, the
+scatter from run to run, gains, noise and drift. `SHARED` consecutive cases have the same rig, so
+that the repeats of the rig file are simulated once for all of them.
 """
 
 from __future__ import annotations
@@ -45,26 +45,26 @@ from sim.plan import LEARNING
 from sim.run import apply_sensor_effects, radiate_motion, sensor_signals
 
 KINDS: Mapping[str, float] = TABLE["kinds"]
-"""Classes of cases, and the share of each."""
+"""Share of each class of cases."""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """What a case is about.
+    """True cause of a case.
 
     Parameters
     ----------
     kind : str
         One of `KINDS`.
     effects : tuple of str
-        Names of what is missing in the model; of an unknown effect the name it has here.
+        Names of the effects that the rig file lacks; for an unknown effect, of `UNKNOWN_EFFECTS`.
     forms : tuple of str
     strengths : tuple of float
-        From 0.01, which cannot be seen, to 1, which is strong [-].
+        From 0.01, which is invisible, to 1, which is strong [-].
     offsets : tuple of (str, float)
-        Parameters that are off in all recordings, and by what factor.
+        Parameters that are wrong in all recordings, and by what factor [-].
     channels : tuple of tuple of str
-        In which each of the effects acts; empty where that is not known.
+        Channels in which each effect acts; empty if unknown.
     """
 
     kind: str
@@ -78,15 +78,15 @@ class Truth:
 def visible_through(
     truth: Truth, acting: Sequence[Collection[str]], channels: Collection[str]
 ) -> Truth:
-    """Return what can be told of a cause from some channels: what acts in others is not there.
+    """Return the cause without effects that act in none of the recorded channels.
 
     Parameters
     ----------
     truth : Truth
     acting : sequence of collection of str
-        Channels in which each of its effects acts.
+        Channels in which each effect acts.
     channels : collection of str
-        That were recorded.
+        Recorded channels.
 
     Examples
     --------
@@ -110,28 +110,28 @@ channels=(('pressure', 'torque'),))
 
 
 SHARED = 4
-"""Cases of one rig."""
+"""Cases per rig."""
 
 WEAKEST = 0.02
-"""Least strength of an effect that is drawn."""
+"""Least strength of a drawn effect [-]."""
 
 _SLOW = 3.0
-"""Of coloured noise and of drift, over the white noise of a good sensor at most [-]."""
+"""Largest coloured noise and drift over the white noise of a good sensor [-]."""
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnCase:
-    """A case.
+    """Drawn case.
 
     Parameters
     ----------
     rig : Rig
-        As its file has it, responses measured.
+        Content of the rig file, with measured responses.
     recordings : tuple of Recording
-        As a user would bring them, with what their sidecars say.
+        With the stated conditions.
     truth : Truth
     departures : tuple of str
-        In what its bench is not quiet.
+        Departures of the bench from a quiet one.
     """
 
     rig: Rig
@@ -146,7 +146,7 @@ def draw_case(seed: int) -> DrawnCase:
     Raises
     ------
     ParameterError
-        It cannot be simulated.
+        If it cannot be simulated.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def draw_case(seed: int) -> DrawnCase:
 
 
 class _DrawnRig(NamedTuple):
-    """A rig with measured responses; what it truly is, at the rate of the simulation."""
+    """Rig with measured responses, and its true responses, speeds and temperature."""
 
     setting: Setting
     plain: Mapping[float, ImpulseResponses]
@@ -199,7 +199,7 @@ def _drawn_rig(number: int) -> _DrawnRig:
     plain = {support: s.response(fine) for support, s in structures.items()}
     listed = activated(rig.effects, EFFECTS)
     if any(one.effect.force or one.effect.chain for one in listed):
-        # What the file says of blows in the anchors is right, and so is what it lists.
+        # Listed effects, and the responses to impacts in the anchors, are as in the rig file.
         for support, response in plain.items():
             modelled = impulse_responses(rig, middle, support, response.rate)
             struck = replace(
@@ -209,17 +209,14 @@ def _drawn_rig(number: int) -> _DrawnRig:
             )
             plain[support] = apply_chain_effects(struck, listed, np.random.default_rng(0))
     wrong = {c: 1.0 + bench.wrong_speed * float(rng.uniform(-1.0, 1.0)) for c in setting.conditions}
-    if rng.random() < 0.5:  # a tachometer that is off, rather than readings
+    if rng.random() < 0.5:  # a wrong tachometer rather than wrong readings
         wrong = dict.fromkeys(wrong, next(iter(wrong.values())))
     speeds = tuple(wrong[c] * c.speed for c in setting.conditions)
     return _DrawnRig(replace(setting, rig=known), plain, speeds, _warmer(known, bench.warmer))
 
 
 def _warmer(rig: Rig, warmer: float) -> Rig:
-    """Return a rig that is warmer than stated; where the file says what that does, it is as it is.
-
-    `warmer` is in kelvin [K].
-    """
+    """Return a rig that is warmer than stated [K]; unchanged if the file has a temperature law."""
     if rig.temperature is not None:
         return rig
     torque, stiffness = 1.0 - 0.005 * warmer, 1.0 - 0.003 * warmer
@@ -240,7 +237,7 @@ def _draw_cause(rig: Rig, rng: Rng) -> tuple[Truth, list[ActiveEffect]]:
             name, strength, fit.kinetic_torque, fit.elastomer_stiffness, rng
         )
         return Truth(kind, (name,), ("plain",), (strength,)), [unknown.active({})]
-    # Of what the rig file lists nothing is missing, but of an irregularity there may be more.
+    # A listed effect is no cause, except for an irregularity, which may be larger than listed.
     more = [spec.name for spec in irregular_effects(rig)]
     listed = {spec.name for spec in rig.effects} - set(more)
     offered = sorted(set(EFFECTS) - listed - _without_effect(rig))
@@ -254,24 +251,24 @@ def _draw_cause(rig: Rig, rng: Rng) -> tuple[Truth, list[ActiveEffect]]:
 
 
 def _without_effect(rig: Rig) -> set[str]:
-    """Return effects that are nothing with the friction law of a rig, as other laws are."""
+    """Return the effects that change nothing with the friction law of a rig."""
     nothing = set()
     if rig.friction.name != "coulomb":
-        nothing.add("partial_slip")  # such a contact creeps anyway
+        nothing.add("partial_slip")  # other laws creep anyway
     if all(fit.critical_torque <= fit.kinetic_torque for fit in rig.fits):
-        nothing |= {"critical_torque_scatter", "static_ageing"}  # nothing breaks
+        nothing |= {"critical_torque_scatter", "static_ageing"}  # no drop of torque
     return nothing
 
 
 def draw_offsets(rng: Rng) -> tuple[tuple[str, float], ...]:
-    """Draw one or two parameters that are off, and by what factor [-]."""
+    """Draw one or two wrong parameters, and the factor of each [-]."""
     sign = float(rng.choice([-1.0, 1.0]))
     names = rng.choice(OFFSETS, int(rng.integers(1, 3)), replace=False).tolist()
     return tuple((name, 1.0 + sign * float(rng.uniform(0.08, 0.2))) for name in names)
 
 
 def active_effect(name: str, strength: float, rng: Rng) -> ActiveEffect:
-    """Draw an effect of the contract, of a strength from 0 to 1 [-], in any form."""
+    """Draw an effect of `sim.effects` in any form, of a strength from 0 to 1 [-]."""
     spec = drawn_effect(name, strength, rng)
     if rng.random() < 0.65:
         return draw_variant(name, strength, rng).active({})
@@ -287,7 +284,7 @@ def _record(
     acting: Sequence[set[str]],
     rng: Rng,
 ) -> Recording:
-    """Run and record a condition, and note in what channels each effect acts."""
+    """Simulate and record a condition; add the channels in which each effect acts to `acting`."""
     chance = np.random.default_rng(int(rng.integers(2**31)))
     setting, bench = drawn.setting, drawn.setting.bench
     stated = setting.conditions[place]
@@ -322,7 +319,7 @@ def _record(
 def _channels_of(
     effect: ActiveEffect, before: ImpulseResponses, after: ImpulseResponses
 ) -> set[str]:
-    """Return the channels in which an effect on motion, force or chain can be seen."""
+    """Return the channels in which an effect on motion, force or chain acts."""
     acts = effect.effect
     if acts.contact is not None or acts.drive is not None:
         return set(CHANNELS)
@@ -337,7 +334,7 @@ def _channels_of(
 
 
 def _sampled(signal: Array, decimation: int, kind: str, sensors: Sensors, rng: Rng) -> Array:
-    """Decimate, add white noise, a coloured one and a drift, and convert."""
+    """Decimate, add white noise, coloured noise and drift, and digitise."""
     x = decimate(signal, decimation)
     sensor = sensors.of(kind)
     colour, ramp = _unsteady(x.size)
@@ -346,7 +343,7 @@ def _sampled(signal: Array, decimation: int, kind: str, sensors: Sensors, rng: R
     slow *= rng.uniform(0.0, _SLOW)
     slow += (drift * rng.uniform(0.0, _SLOW)) * ramp
     white = (sensor.noise or 0.0) * float(np.exp(0.1 * rng.standard_normal()))
-    # Amplifiers that hiss more do not drift more.
+    # Amplifiers with more white noise do not drift more.
     slow *= min(white, NOISE_DRAWN[1] * Acquisition().noise[kind])
     gain = 0.0 if kind == "angle" else Scatter().gain
     slow += (1.0 + gain * rng.standard_normal()) * x
@@ -357,7 +354,7 @@ def _sampled(signal: Array, decimation: int, kind: str, sensors: Sensors, rng: R
 
 @lru_cache(maxsize=4)
 def _unsteady(n: int) -> tuple[Array, Array]:
-    """By what white noise of `n` samples is divided to be coloured, and a drift [-]."""
+    """Return the divisor of the spectrum of coloured noise, and a linear drift [-]."""
     return np.sqrt(1.0 + np.fft.rfftfreq(n) / 1e-3), np.linspace(-1.0, 1.0, n)
 
 

@@ -1,12 +1,12 @@
-"""Rigs and benches as users have them, and what they record; drawn without knowing the cause.
+"""Random rigs, benches and conditions, drawn independently of the cause.
 
-A bench is what a rig is recorded on and with. Three in ten are quiet and of the thesis's size; the
-others depart from that in several ways at once, over ranges wider than those of any bench that is
-known. Rigs may have friction laws of their own, with parameters about those of the shipped
-materials. What a law's numbers are on a rig of another size follows from their units: twists go
-with torque over stiffness, times with the period of the bushing, speeds with the ratio of both. So
-the rig still does what it did. A shaft comes to its speed within a recording from rest, run up, or
-swinging in.
+A bench is the equipment with which a rig is recorded. Three of ten are quiet and of the thesis's
+size. The others depart from that in several ways at once, over wider ranges than those of known
+benches. Rigs may have friction laws of their own, with parameters near those of the shipped
+materials. On a rig of another size the parameters of a law scale by their units: angles with torque
+over stiffness, times with the period of the bushing, speeds with the ratio of both. So the rig
+behaves alike. A recording may include the start of the shaft: from rest, as a run-up, or with a
+decaying swing.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 _LATEST = 0.55
-"""Share of a recording after which the shaft turns evenly, to a per mille of its speed."""
+"""Share of a recording after which the speed of the shaft is constant to 0.1 % [-]."""
 
 
 def draw_start(
@@ -49,18 +49,19 @@ def draw_start(
     Parameters
     ----------
     name : str
-        Of `STARTS`.
+        Key of `STARTS`.
     speed : float
-        In the end [rad/s].
+        Final speed [rad/s].
     seconds, settling : float
-        Of the recording, and how long a shaft that does not start in it turns before [s].
+        Length of the recording, and time before it in which a shaft that does not start from rest
+        turns [s].
     rng : numpy.random.Generator
 
     Returns
     -------
     shaft : LoggedSpeed
     before : float
-        How long it turns before the recording begins [s].
+        Time for which it turns before the recording begins [s].
 
     Examples
     --------
@@ -104,17 +105,17 @@ STARTS: Mapping[str, Callable[[float, Rng], Course]] = {
     "run_up": _run_up,
     "swing": _swing,
 }
-"""Each takes the length of the recording [s] and a generator, and gives the speed over that in the
-end as a function of time."""
+"""Courses of speed: functions of the length of the recording [s] and a generator that return the
+speed over the final speed as a function of time."""
 
 
 TABLE = packaged_toml("noise.training.causes.cases", "cases.toml")
 
 MATERIALS: Mapping[str, float] = TABLE["materials"]
-"""Shipped ones with laws of their own, and how often each is met."""
+"""Shipped materials with friction laws of their own, and the share of each [-]."""
 
 OWN_LAWS = {name: float(row["share"]) for name, row in TABLE["laws"].items()} | {**MATERIALS}
-"""Laws, or materials that have one, and how often each is met."""
+"""Laws, or materials with a law, and the share of each [-]."""
 
 
 def draw_law(name: str, rng: Rng) -> LawSpec:
@@ -131,18 +132,18 @@ def draw_law(name: str, rng: Rng) -> LawSpec:
 
 
 def scaled_law(law: LawSpec, *, angle: float, time: float, torque: float) -> LawSpec:
-    """Return a law as it is on a rig of another size.
+    """Scale a law to a rig of another size.
 
     Parameters
     ----------
     law : LawSpec
     angle, time, torque : float
-        Factors on twists, on the period of the bushing, on torques [-].
+        Factors on angles, on the period of the bushing, on torques [-].
 
     Returns
     -------
     LawSpec
-        With all its parameters, those that leave their range held at its end.
+        With all its parameters, limited to their ranges.
 
     Examples
     --------
@@ -167,49 +168,49 @@ def scaled_law(law: LawSpec, *, angle: float, time: float, torque: float) -> Law
 
 
 NOISE_DRAWN = (0.7, 1.6)
-"""Between which the noise of a quiet bench's sensors lies, times that of `sim.acquisition`."""
+"""Range of the noise of a quiet bench's sensors over that of `sim.acquisition` [-]."""
 
 SIZES = ("elastomer_inertia", "clamp_inertia", "elastomer_stiffness", "torque", "support")
-"""What a bench of another size has more or less of, each by itself."""
+"""Quantities in which a bench of another size differs, each independently."""
 
 _RATES = (25_600, 30_000, 32_000, 44_100, 48_000, 51_200)
-"""Of recordings of a usual length [Hz]."""
+"""Sampling rates of recordings of usual length [Hz]."""
 
 
 @dataclass(frozen=True)
 class Bench:
-    """One bench.
+    """Equipment and size of a rig.
 
     Parameters
     ----------
     departures : tuple of str
-        In what it is not quiet: ``laws``, or of `DEPARTURES`.
+        Departures from a quiet bench: ``laws``, or keys of `DEPARTURES`.
     rate, seconds : float
-        Of its recordings [Hz], [s].
+        Sampling rate and length of its recordings [Hz], [s].
     noise : mapping of str to float
         Standard deviation of white noise by channel [unit of the channel].
     bits : int
-        Of a converter; 0 where samples have no steps.
+        Resolution of a converter; 0 without quantisation.
     ranges : float
-        Of that converter, over the thesis's [-].
+        Range of that converter over the thesis's [-].
     stated : bool
         Whether the rig file states noise and converter.
     law : str
-        Of `noise.training.causes.cases.rigs.OWN_LAWS`; empty for the constant one.
+        Key of `OWN_LAWS`; empty for the constant law.
     sizes : mapping of str to float
-        Factors from the thesis's rig, by `SIZES` [-].
+        Factors on the thesis's rig, by `SIZES` [-].
     listed : tuple of LawSpec
         Effects that the rig file lists besides those of its material.
     repeats : bool
         Whether two conditions are recorded twice.
     wrong_speed : float
-        Relative error of stated speeds, at most [-].
+        Largest relative error of stated speeds [-].
     warmer : float
-        Than stated [K].
+        True less stated temperature [K].
     responses : str
-        How the hammer test was: ``good``, ``poor`` or ``none``.
+        Quality of the hammer test: ``good``, ``poor`` or ``none``.
     start : str
-        Of `noise.training.causes.cases.rigs.STARTS`; empty where recordings are settled.
+        Key of `STARTS`; empty where recordings are settled.
     """
 
     departures: tuple[str, ...] = ()
@@ -230,27 +231,27 @@ class Bench:
 
     @property
     def angle(self) -> float:
-        """Factor on twists [-]."""
+        """Factor on angles [-]."""
         return self.sizes["torque"] / self.sizes["elastomer_stiffness"]
 
     @property
     def time(self) -> float:
-        """Factor on how long a slip lasts [-]."""
+        """Factor on times, such as the length of a slip [-]."""
         return math.sqrt(self.sizes["elastomer_inertia"] / self.sizes["elastomer_stiffness"])
 
     @property
     def pace(self) -> float:
-        """Factor on the speeds at which such a rig does the same [-]."""
+        """Factor on speeds [-]."""
         return self.angle / self.time
 
     def sensors(self, largest: Mapping[str, float]) -> Sensors:
-        """Return what it records through.
+        """Return the sensors of the bench.
 
         Parameters
         ----------
         largest : mapping of str to float
-            Values to expect by channel; its converter's range is doubled until it holds them [unit
-            of the channel].
+            Largest expected values by channel; the range of the converter is doubled until they
+            fit [unit of the channel].
         """
 
         def sensor(kind: str, noise: float) -> Sensor:
@@ -290,7 +291,7 @@ def draw_bench(rng: Rng) -> Bench:
     for name, (_, draw) in DEPARTURES.items():
         if name in met:
             bench = replace(bench, **draw(rng))
-    # The motion of a law that is not the constant one costs ten times as much.
+    # Motion with a law other than the constant one takes ten times as long to compute.
     longest = math.inf if not bench.law else 1.6 if "records" in met else 0.7
     return replace(bench, departures=tuple(met), seconds=min(bench.seconds, longest))
 
@@ -304,7 +305,7 @@ def _sensors(rng: Rng) -> dict[str, Any]:
 
 
 def _records(rng: Rng) -> dict[str, Any]:
-    long = math.log(5.0 / 0.3) * float(rng.random()) ** 4.0  # long ones are rare
+    long = math.log(5.0 / 0.3) * float(rng.random()) ** 4.0  # long recordings are rare
     rates = (12_000, 16_000, 20_000, 22_050, *_RATES, 65_536, 96_000)
     return {"rate": float(rng.choice(rates)), "seconds": round(0.3 * math.exp(long), 2)}
 
@@ -327,33 +328,33 @@ DEPARTURES: Mapping[str, tuple[float, Callable[[Rng], dict[str, Any]]]] = {
     "responses": (1.1, lambda rng: {"responses": "poor" if rng.random() < 0.67 else "none"}),
     "starts": (1.2, lambda rng: {"start": str(rng.choice(list(STARTS)))}),
 }  # fmt: skip
-"""Ways besides the friction law in which a bench is not quiet: how often each is met, and what it
-changes."""
+"""Departures from a quiet bench other than the friction law: relative frequency, and a function
+that draws the changed fields of `Bench`."""
 
 
 _FITS = {0.178e-3: (430.0, 5.35, 4.0), 0.279e-3: (665.0, 10.7, 8.0), 0.381e-3: (1011.0, 27.0, 20.0)}
 """Stiffness [Nm/rad], critical and kinetic torque [Nm] at each interference [m]: Table 4.1."""
 
 _CREEPING = {0.178e-3: 3.0, 0.279e-3: 4.5, 0.381e-3: 8.0}
-"""Speed up to which each fit sticks and slips [rad/s]; most recordings lie below it."""
+"""Speed up to which each interference sticks and slips [rad/s]; most recordings lie below."""
 
 _DAMPING = {2214.0: 0.105, 3745.0: 0.085, FIXED: 0.085}
-"""Of each support [Nm s/rad]."""
+"""Damping with each support [Nm s/rad]."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A rig, and how it is recorded.
+    """Rig, bench and conditions of a case.
 
     Parameters
     ----------
     rig : Rig
-        As its file has it.
+        Content of the rig file.
     conditions : tuple of KnownCondition
-        What is stated of the recordings, one each.
+        Stated condition of each recording.
     bench : Bench
     sensors : Sensors
-        Through which it is recorded, whether the file says so or not.
+        True sensors, whether the rig file states them or not.
     """
 
     rig: Rig
@@ -375,7 +376,7 @@ def draw_setting(rng: Rng) -> Setting:
     bench = draw_bench(rng)
     rig = _rig(bench, rng)
     conditions = _conditions(rig, bench, rng)
-    if bench.law and bench.law not in MATERIALS:  # nobody brings many rigs that are silent
+    if bench.law and bench.law not in MATERIALS:  # few users bring silent rigs
         for _ in range(4):
             if _vibrates(rig, conditions[:2]):
                 break
@@ -390,14 +391,14 @@ def draw_setting(rng: Rng) -> Setting:
 
 
 def _rig(bench: Bench, rng: Rng) -> Rig:
-    """Draw a rig about the thesis's, or about a material's, as large as its bench says."""
+    """Draw a rig near the thesis's, or near that of a material, of the size of its bench."""
     thesis = load_material_rig("fluorocarbon-thesis")
     if bench.law in MATERIALS:
         plain = load_material_rig(bench.law)
         if rng.random() < 0.4:
             plain = constant_version(plain)
     else:
-        # A contact that is elastic takes a part of the drop of torque.
+        # An elastic contact takes a part of the drop of torque.
         steeper = float(rng.uniform(1.0, 2.2)) if bench.law else 1.0
         fits = tuple(
             Fit(interference, stiffness, kinetic + steeper * (critical - kinetic), kinetic,
@@ -428,7 +429,7 @@ def _law(law: LawSpec, bench: Bench) -> LawSpec:
 
 
 def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
-    """Whether a rig does anything but slide evenly at one of its conditions."""
+    """Return whether a rig vibrates at one of its conditions."""
     for c in conditions:
         motion = simulate_motion(
             rig, ConstantSpeed(c.speed), interference=c.interference,
@@ -442,7 +443,7 @@ def _vibrates(rig: Rig, conditions: Sequence[KnownCondition]) -> bool:
 
 
 def _sized(fit: Fit, bench: Bench, rng: Rng) -> Fit:
-    """Return a fit of a rig of another size, about which its numbers scatter."""
+    """Return a fit of a rig of another size, with scatter of its numbers."""
     size = bench.sizes
     inertia = math.sqrt(size["elastomer_inertia"] * size["clamp_inertia"])
     damping = math.sqrt(size["elastomer_stiffness"] * inertia)
@@ -463,13 +464,13 @@ def _about(value: float, rng: Rng) -> float:
 
 
 def _support(support: float, bench: Bench) -> float:
-    """Return the stiffness of a support on a bench of another size; a bolted clamp stays so."""
+    """Return the stiffness of a support on a bench of another size; a fixed clamp stays fixed."""
     return float(round(support * bench.sizes["support"])) if support != FIXED else FIXED
 
 
 def _conditions(rig: Rig, bench: Bench, rng: Rng) -> tuple[KnownCondition, ...]:
     again = 2 if bench.repeats else 0
-    together = 4.2 if bench.law else 6.5  # that the recordings of a case may last [s]
+    together = 4.2 if bench.law else 6.5  # longest sum of the recordings of a case [s]
     most = int(together / (bench.seconds + DIAGNOSIS.settling)) - again
     different = min(int(rng.integers(2, 8)), max(most, 2))
     known = sorted(rig.fits[0].damping)

@@ -1,4 +1,4 @@
-"""Random structures: modes of clamp, beams, plate and air, and how a hammer test measures them."""
+"""Random structures: modes of clamp, beams, plate and air, and their simulated hammer test."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ from noise.diagnosis.cases.draws import log_uniforms
 from sim.bushing import LumpedBushing
 
 _LINES = np.arange(10.0, 10_001.0, 2.5)
-"""Of the hammer test [Hz]."""
+"""Frequencies of the hammer test [Hz]."""
 
 _SOUND_SPEED = 343.0
 
 
 TRADES = packaged_toml("noise.training.causes.cases", "cases.toml")["trades"]
-"""What stands behind a clamp: rows of the table."""
+"""Kinds of structure behind a clamp: rows of the table."""
 
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """Ways from torque and from impacts in the anchors to acceleration and sound, as sums of modes.
+    """Responses of acceleration and sound to torque and to impacts in the anchors: sums of modes.
 
     Parameters
     ----------
     bushing : LumpedBushing
-        Whose clamp and support make the torsional mode.
+        Its clamp and support make the torsional mode.
     beams, plate, anchors : ndarray, shape (3, n_modes)
         Frequency [Hz], damping ratio and modal constant.
     lever : float
-        From the torsion to the accelerometer [m].
+        Distance of the accelerometer from the axis of torsion [m].
     clamp_to_pressure : float
         [Pa per rad/s2]
     distance : float
-        Of the microphone [m].
+        Distance of the microphone [m].
     """
 
     bushing: LumpedBushing
@@ -56,7 +56,7 @@ class Structure:
     def from_torque(
         self, frequency: Array
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Responses of acceleration and pressure to the torque.
+        """Return the responses of acceleration and pressure to the torque.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Structure:
     def measured(
         self, support_stiffness: float, rng: Rng, *, poor: bool = False
     ) -> MeasuredResponse:
-        """Return the responses to the torque as a hammer test of a support [Nm/rad] finds them."""
+        """Return the responses to the torque by a hammer test of a support [Nm/rad]."""
         acceleration, pressure = (_as_measured(h, rng, poor) for h in self.from_torque(_LINES))
         return MeasuredResponse(
             support_stiffness,
@@ -92,7 +92,7 @@ class Structure:
         )
 
     def response(self, rate: float) -> ImpulseResponses:
-        """Impulse responses at a sampling rate [Hz]."""
+        """Return the impulse responses at a sampling rate [Hz]."""
         n = int(0.25 * rate)
         frequency = np.asarray(np.fft.rfftfreq(2 * n, 1.0 / rate), np.float64)
         x = np.clip((frequency - 0.4 * rate) / (0.05 * rate), 0.0, 1.0)
@@ -111,7 +111,7 @@ class Structure:
 
 
 def draw_structure(bushing: LumpedBushing, rng: Rng, trade: str = "thesis") -> Structure:
-    """Draw the structure of a support; stiffer beams ring higher, a bolted clamp hardly moves."""
+    """Draw the structure of a support; beams and fixed clamps of stiffer supports ring higher."""
     fixed, row = bushing.clamp_is_fixed, TRADES[trade]
     stiffer = 1.0 if fixed else (bushing.support_stiffness / 2214.0) ** 0.67
     n_beams, n_plate = int(rng.integers(2, 7)), int(rng.integers(*row["modes"]))
@@ -157,7 +157,7 @@ def _modes(frequency: Array, modes: Array) -> NDArray[np.complex128]:
 def _as_measured(
     response: NDArray[np.complex128], rng: Rng, poor: bool
 ) -> tuple[NDArray[np.complex128], Array]:
-    """Add the scatter of an average over impacts, whose coherence falls with what is passed."""
+    """Return a response with the scatter of an average over impacts, and its coherence."""
     size = np.abs(response)
     floor = 0.006 * float(np.median(size)) * (1.0 + (30.0 / _LINES) ** 2)
     noise = (floor / size) ** 2 + 1e-3 * (1.0 + (_LINES / 6e3) ** 4)

@@ -1,13 +1,12 @@
-"""Effects that no library has, for the diagnosis to learn what it does not know.
+"""Effects that are in no library, from which the posterior learns the cause ``unknown``.
 
-Each is made of the same parts as the effects of `sim.effects` but is none of them: contact and
-elastomer modulated over time or angle, springs that harden, drives that stall or have play, what
-sounds beside the rig, sensors that leak into each other, lose samples, bits, contact or the beat.
-What they have in common is only that the cause posterior must not give them a name. They are rows
-of ``unknown_effects.toml``.
+They use the same hooks as the effects of `sim.effects` but are none of them: contact and elastomer
+modulated over time or angle, hardening springs, drives that stall or have play, sound sources
+beside the rig, sensors with crosstalk, lost samples, bit errors, loose contacts or a wrong clock.
+They are rows of ``unknown_effects.toml``.
 
-A row's function is one of this file: of a run and the numbers that the row draws. Decorators make
-of those that act on signals what `noise.training.causes.cases.variants.made` calls.
+A row names a function of this file and the distribution of its parameters. Decorators turn
+functions of signals into what `noise.training.causes.cases.variants.made` calls.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ def _table_hook(*numbers):
 
 
 def _drawn_table(scale, table):
-    """Change torques over time by what is drawn for each run."""
+    """Change torques over time by a table that is drawn for each run."""
 
     def pack(_form, _values, rng):
         values = np.clip(table(rng), -0.6, 1.0)
@@ -59,7 +58,7 @@ def _noise(rng, n, rate, low, high):
 
 
 def normed(x):
-    """Take away the mean of a signal, and divide it by its standard deviation."""
+    """Subtract the mean of a signal, and divide it by its standard deviation."""
     return (x - x.mean()) / (float(x.std()) + 1e-30)
 
 
@@ -176,7 +175,7 @@ def loose_bolt(a, duration, chance, strongest, seed):
 
 
 class _Run(NamedTuple):
-    """What was recorded, its rate [Hz], and the chance of this run."""
+    """Signals of a run, sampling rate [Hz], and random generator."""
 
     signals: Signals
     rate: float
@@ -212,7 +211,7 @@ def _channel(function):
 
 
 def _added(function):
-    """Add ``function(run, **numbers)`` of rms 1, times levels, to what is sensed."""
+    """Add ``function(run, **numbers)``, of rms 1, times levels to the channels."""
 
     @wraps(function)
     def maker(a, levels, **numbers):

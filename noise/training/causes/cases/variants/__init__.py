@@ -1,8 +1,9 @@
-"""Further functional forms of every effect, for the diagnosis to know an effect by what it does.
+"""Further functional forms of every effect, for training only.
 
-The simulator's own forms are three for each effect; a real rig has none of them. These are others,
-many with random shapes, so that what is learnt is the effect and not a formula. They are private
-to the diagnosis: their parameters are drawn, nobody sets them. Each is a row of ``variants.toml``.
+The simulator has about three forms of each effect, and a real rig has none of them exactly. These
+are some 240 others, many with random shapes, so that the posterior learns the effect rather than a
+formula. Each is a row of ``variants.toml``, which names a function and the distribution of its
+parameters.
 """
 
 from __future__ import annotations
@@ -32,19 +33,19 @@ _MAKERS = {**vars(chain), **vars(contact), **vars(drive), **vars(sensors)}
 def made(
     function: Callable[..., Any], specs: Mapping[str, Any], strength: float, rng: Rng, **known: Any
 ) -> dict[str, Any]:
-    """Make what an effect acts by: of drawn numbers, and of what is known and asked for.
+    """Call a function with a strength, drawn parameters, and the known values that it takes.
 
     Parameters
     ----------
     function : callable
-        Function of the strength and the numbers.
+        Function of the strength and the parameters.
     specs : mapping
-        What is drawn, as the tables explain it.
+        Distributions of the parameters, as explained in the tables.
     strength : float
         [-]
     rng : numpy.random.Generator
     **known
-        Given to a function that has such a parameter.
+        Values that are passed if the function has such a parameter.
 
     Returns
     -------
@@ -58,7 +59,7 @@ def made(
 
 
 def _drawn(name: str, row: Mapping[str, Any], strength: float, rng: Rng) -> Effect:
-    """Draw the numbers of a row, and make its effect of them."""
+    """Draw the parameters of a row, and return its effect."""
     given = {key: spec for key, spec in row.items() if key not in ("form", "make")}
     given |= {k: v for k, v in _TABLE["draws"].get(row["make"], {}).items() if k not in row}
     acting = made(_MAKERS[row["make"]], given, strength, rng, form=row["form"])
@@ -74,20 +75,20 @@ VARIANTS: Mapping[str, tuple[Recipe, ...]] = {
 
 
 def draw_variant(name: str, strength: float, rng: Rng) -> Effect:
-    """Draw one of an effect's further forms.
+    """Draw one of the further forms of an effect.
 
     Parameters
     ----------
     name : str
-        Of `VARIANTS`.
+        Key of `VARIANTS`.
     strength : float
-        From 0, the plain model, to 1, which nobody overlooks [-].
+        From 0, without an effect, to 1, which is strong [-].
     rng : numpy.random.Generator
 
     Returns
     -------
     Effect
-        Of the effect's name, with the one form that was drawn.
+        With the one form that was drawn.
 
     Examples
     --------
