@@ -275,12 +275,14 @@ def _labelled(
     recordings: Sequence[Path], tables: Mapping[Path, Sequence[Row]]
 ) -> list[tuple[Row, ...]]:
     """Return the rows of each recording, of the first table that has some."""
-    found: dict[Path, tuple[Row, ...]] = {}
+    of_recording: dict[Path, tuple[Row, ...]] = {}
     for table, rows in tables.items():
         of_file = table_recordings((str(row["file"]) for row in rows), table, recordings)
-        for path in {path for path in of_file.values() if path is not None and path not in found}:
-            found[path] = tuple(row for row in rows if of_file[str(row["file"])] == path)
-    return [found.get(path, ()) for path in recordings]
+        for path in {
+            path for path in of_file.values() if path is not None and path not in of_recording
+        }:
+            of_recording[path] = tuple(row for row in rows if of_file[str(row["file"])] == path)
+    return [of_recording.get(path, ()) for path in recordings]
 
 
 def _read_entry(
