@@ -19,7 +19,7 @@ from noise.pages.maps import ConditionMap, areas_of, axis_of
 from noise.pages.page import map_html
 from noise.screening.design import Design as Screened, Use
 from noise.screening.grid import shared_grid
-from noise.screening.mapping import BEYOND, SIMULATED, DesignMap, map_design
+from noise.screening.mapping import map_design
 from noise.screening.point import PointResult, batch_evaluator
 from noise.screening.vibration import Condition
 
@@ -45,7 +45,7 @@ _FASTEST = 13.0
 
 
 def chart_of(request: ChartRequest) -> dict[str, object]:
-    """Return the noise map as HTML, its legend, and the spacing of its points in words.
+    """Return the noise map as HTML, and its legend.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
     >>> rig = load_material_rig("PDMS")
     >>> found = chart_of(ChartRequest(replace(rig, fits=rig.fits[:1]), 2214.0, 23.0))
     >>> found["legend"], 'data-label="none"' in found["html"]
-    ('Quiet everywhere', True)
+    ('none everywhere: no creak, squawk or squeal', True)
     """
     rig = request.rig
     low, high = rig.interference_range
@@ -82,8 +82,7 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
         total = max(total, done + len(points))
         return evaluate(rig, points)
 
-    design_map = map_design(rig, grid, counted, design="design", most=simulations)
-    labels = design_map.label[0, 0]
+    labels = map_design(rig, grid, counted, design="design", most=simulations).label[0, 0]
     across = axis_of(grid.speed)
     up = axis_of([round(1e3 * fit, 6) for fit in grid.interference], named_over=_HEIGHT)
     areas = areas_of(labels, across, up, _HEIGHT)
@@ -91,21 +90,6 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
     shown = [label for label in MAP_LABELS if label != "none" and label in labels]
     legend = [f"{LABEL_LOOKS[label].mark} {_MEANING.get(label, label)}" for label in shown]
     return {
-        "legend": ", ".join(legend) or "Quiet everywhere",
+        "legend": ", ".join(legend) or "none everywhere: no creak, squawk or squeal",
         "html": map_html(noises),
-        "spacing": _spacing(design_map),
     }
-
-
-def _spacing(design_map: DesignMap) -> str:
-    """Return the distance of known points across boundaries, in words."""
-    grid = design_map.grid
-    speed, fit = np.array(grid.speed), 1e3 * np.array(grid.interference)
-    known = np.isin(design_map.how, (SIMULATED, BEYOND))[0, 0]
-    widest = float(np.diff(speed).max(initial=0.0))
-    for row, label in zip(known, design_map.label[0, 0], strict=True):
-        at = np.flatnonzero(row)
-        across = label[at[1:]] != label[at[:-1]]
-        widest = max(widest, float(np.diff(speed[at])[across].max(initial=0.0)))
-    apart = [f"{widest:.2g} rad/s"]
-    return " and ".join(apart + ([f"{np.diff(fit).max():.2g} mm"] if fit.size > 1 else []))

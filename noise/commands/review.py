@@ -21,7 +21,6 @@ OPTIONS = (
     Option("--title TEXT", str, "Review"),
     Option("--seconds S", number(least=1.0, most=600.0), 10.0),
     Option("--megabytes MB", number(least=1.0, most=2000.0), 40.0),
-    Option("--pascal-per-full-scale PA", number(above=0.0)),
     Option("--no-labelling"),
     *CALIBRATION,
 )
@@ -38,7 +37,6 @@ def run(options: Namespace) -> int:
         options.out,
         title=options.title,
         full_scale=full_scale_of(options),
-        pascal_per_full_scale=options.pascal_per_full_scale,
         seconds=options.seconds,
         megabytes=options.megabytes,
         classify=not options.no_labelling,

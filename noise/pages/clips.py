@@ -20,7 +20,6 @@ import soundfile
 from numpy.typing import NDArray
 
 from models.condition import Condition
-from models.errors import ParameterError
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import full_scale_without_clipping, true_peak
 from noise.base.labels import LABELS
@@ -152,13 +151,10 @@ class Gain:
         Of calibrated sounds [Pa]; None where there are none.
     uncalibrated : float or None
         Of the others, in fractions of their own full scale.
-    stated : bool
-        Whether the caller has set `calibrated`.
     """
 
     calibrated: float | None
     uncalibrated: float | None
-    stated: bool = False
 
     def of(self, entry: Entry) -> float:
         """Return the full scale of an entry's sound, in its unit, such as [Pa]."""
@@ -176,8 +172,11 @@ class Gain:
         """
         sentences = []
         if self.calibrated is not None:
-            how = "are level-true" if self.stated else "share one gain and may be compared"
-            sentences.append(f"Calibrated sounds {how}: {full_scale_words(self.calibrated)}.")
+            level = 20.0 * math.log10(self.calibrated / REFERENCE_PRESSURE)
+            sentences.append(
+                "Calibrated sounds share one gain and may be compared: full scale = "
+                f"{self.calibrated:.4g} Pa ({level:.0f} dB peak re 20 µPa)."
+            )
         if self.uncalibrated is not None:
             decibel = f"{-20.0 * math.log10(self.uncalibrated):+.1f}".replace("-", "\N{MINUS SIGN}")
             sentences.append(
@@ -209,61 +208,23 @@ class Clip:
     full_scale: float
 
 
-def full_scale_words(full_scale: float) -> str:
-    """Return the full scale [Pa] in words.
-
-    Examples
-    --------
-    >>> full_scale_words(2.0)
-    'full scale = 2 Pa (100 dB peak re 20 µPa)'
-    """
-    level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
-    return f"full scale = {full_scale:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
-
-
-def common_gain(entries: Iterable[Entry], pascal: float | None = None) -> Gain:
-    """Return the common gain of a set.
-
-    Parameters
-    ----------
-    entries : iterable of Entry
-    pascal : float, optional
-        Full scale of calibrated sounds [Pa]; by default what the loudest of them needs.
-
-    Raises
-    ------
-    ParameterError
-        A sound would clip at the full scale given.
-    """
-    peaks: dict[bool, tuple[float, str]] = {}
+def common_gain(entries: Iterable[Entry]) -> Gain:
+    """Return the common gain of a set: what the loudest sound of each kind needs."""
+    peaks: dict[bool, float] = {}
     entries = list(entries)
     for calibrated in (True, False):
         sounds = [
-            (one.sound, float(np.abs(one.sound).max(initial=0.0)), one.title)
+            (float(np.abs(one.sound).max(initial=0.0)), one.sound)
             for one in entries
             if one.sound is not None and one.calibrated == calibrated
         ]
         # The true peak is less than 12 dB above the largest sample.
-        most = max((largest for _, largest, _ in sounds), default=0.0)
-        loud = [
-            (true_peak(sound.astype(np.float64), RATE), title)
-            for sound, largest, title in sounds
-            if largest >= 0.25 * most
-        ]
+        most = max((largest for largest, _ in sounds), default=0.0)
+        loud = [sound for largest, sound in sounds if largest >= 0.25 * most]
         if loud:
-            peaks[calibrated] = max(loud)
-    least = {
-        calibrated: full_scale_without_clipping(peak) or 1.0
-        for calibrated, (peak, _) in peaks.items()
-    }
-    if pascal is None:
-        return Gain(least.get(True), least.get(False))
-    if (needed := least.get(True)) is not None and pascal < needed:
-        raise ParameterError(
-            f"{peaks[True][1]}: would clip at {pascal:g} Pa per full scale; "
-            f"{needed:g} Pa is the least that holds all sounds"
-        )
-    return Gain(None if needed is None else pascal, least.get(False), stated=True)
+            peak = max(true_peak(sound.astype(np.float64), RATE) for sound in loud)
+            peaks[calibrated] = full_scale_without_clipping(peak) or 1.0
+    return Gain(peaks.get(True), peaks.get(False))
 
 
 def make_clips(entries: Mapping[str, Entry], gain: Gain) -> dict[str, Clip]:

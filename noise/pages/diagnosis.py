@@ -207,46 +207,46 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
 
 
 _LIKELY_ENOUGH = 0.05
-_FEWEST, _MOST = 3, 6
+_FEWEST = 3
 _BESIDE_EFFECTS = ("none", "parameters", "unknown")
 
 
-def ranked_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
-    """Return the probabilities of all causes, those of the verdict first, and how many to show.
+def likely_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
+    """Return the probabilities of the causes to show, the verdict first, and how many more there are.
 
     Examples
     --------
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> chances = {"none": 0.9, "parameters": 0.06, "mains_hum": 0.02, "clipping": 0.01}
-    >>> ranked_causes(Diagnosis((), (), None, {}, (), chances, {}, "", (), 1.0, 1.0, 0.6, 1.0))
-    ({'none': 0.9, 'parameters': 0.06, 'mains_hum': 0.02, 'clipping': 0.01}, 3)
+    >>> likely_causes(Diagnosis((), (), None, {}, (), chances, {}, "", (), 1.0, 1.0, 0.6, 1.0))
+    ({'none': 0.9, 'parameters': 0.06, 'mains_hum': 0.02}, 1)
     """
-    chances: dict[str, float] = dict(diagnosis.probabilities)
-    for effect in diagnosis.effects:
-        chances.setdefault(effect.name, effect.probability)
+    fitted = {one.name: one.probability for one in diagnosis.effects}
+    chances = fitted | dict(diagnosis.probabilities)
     order = sorted(chances, key=lambda name: (name not in diagnosis.verdict, -chances[name]))
-    n = sum(chances[name] >= _LIKELY_ENOUGH or _is_verdict(diagnosis, name) for name in order)
-    n = min(max(n, _FEWEST), max(_MOST, len(diagnosis.verdict)))
-    return {name: chances[name] for name in order}, n
+    shown = {
+        name: chances[name]
+        for i, name in enumerate(order)
+        if i < _FEWEST or name in fitted or chances[name] >= _LIKELY_ENOUGH
+    }
+    return shown, len(order) - len(shown)
 
 
 def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
     return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
 
 
-_CAUSE_COLUMNS = ("Cause", "Probability", "Explained", "Strength as fitted, 90 %")
-
-
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
     """Return a table of the likely causes: probability, closed share, strength."""
-    chances, n = ranked_causes(diagnosis)
+    chances, more = likely_causes(diagnosis)
     if not chances:
         return [b.Text(NOT_DETERMINED.capitalize() + ".")]
-    rows = [_cause_row(diagnosis, *one) for one in list(chances.items())[:n]]
-    more = len(chances) - n
-    rest = f" {more} less probable cause{'s are' if more > 1 else ' is'} listed in the details."
+    rows = [_cause_row(diagnosis, *one) for one in chances.items()]
+    rest = f" {more} less probable cause{'s are' if more > 1 else ' is'} in diagnosis.json."
     return [
-        b.Table(_CAUSE_COLUMNS, rows, style="causes"),
+        b.Table(
+            ("Cause", "Probability", "Explained", "Strength as fitted, 90 %"), rows, style="causes"
+        ),
         b.Text(
             "An effect's probability is that it is at work, alone or with others. Explained is the "
             "share of the gap beyond 1, with its 90 % interval. A strength is that of the form "
@@ -317,7 +317,6 @@ _OF_ALL = (
 
 
 def _details(diagnosis: Diagnosis) -> list[b.Block]:
-    chances, n = ranked_causes(diagnosis)
     located = [diagnosis.location] if diagnosis.location is not None else []
     surest = [one for one in diagnosis.differences if one not in located]
     places = [
@@ -348,9 +347,6 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         ),
         _PARAMETERS: (
             ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
-        ),
-        "Less probable causes": (
-            _CAUSE_COLUMNS, [_cause_row(diagnosis, *one) for one in list(chances.items())[n:]],
         ),
     }  # fmt: skip
     missing = {

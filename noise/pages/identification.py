@@ -81,13 +81,23 @@ def _prediction(forecast: Forecast) -> Panel:
 _CANDIDATES = {candidate.name: candidate for candidate in CANDIDATES}
 
 _MEANINGS = {
-    "critical_torque": "median over these recordings of the highest torque of each cycle",
-    "kinetic_torque": "mean over these recordings while the contact slides fast",
-    "law_critical_torque": "of the law that fits best: critical_torque_Nm of the rig file",
-    "law_kinetic_torque": "of the law that fits best: kinetic_torque_Nm of the rig file",
-    "elastomer_damping_share": "share of the damping that acts in the elastomer, not in the beams",
-}
-"""Descriptions of numbers that need one."""
+    "critical_torque": (
+        "recorded peak torque", "median of the highest torque of each cycle; critical_torque"
+    ),
+    "kinetic_torque": (
+        "recorded sliding torque", "mean while the contact slides fast; kinetic_torque"
+    ),
+    "law_critical_torque": (
+        "critical torque", "of the law that fits best: critical_torque_Nm of the rig file"
+    ),
+    "law_kinetic_torque": (
+        "kinetic torque", "of the law that fits best: kinetic_torque_Nm of the rig file"
+    ),
+    "elastomer_damping_share": (
+        "elastomer damping share", "of the damping, what acts in the elastomer, not in the beams"
+    ),
+}  # fmt: skip
+"""Names and descriptions of numbers whose key says too little, with the key of the JSON file."""
 
 
 def write_identification(folder: Path, result: Identification) -> None:
@@ -197,7 +207,7 @@ def _title(result: Identification) -> str:
 
 def _answer(result: Identification) -> list[str]:
     stiffness = [
-        f"At {1e3 * (one.interference or 0.0):g} mm the elastomer has "
+        f"At {1e3 * (one.interference or 0.0):g} mm the stiffness of the elastomer is "
         f"{one.value:.4g} Nm/rad ({one.low:.4g} to {one.high:.4g})."
         for one in result.numbers
         if one.name == "elastomer_stiffness"
@@ -221,7 +231,7 @@ def _row(one: Number) -> list[b.Cell | str]:
         fixed = one.support_stiffness == float("inf")
         at.append("clamp fixed" if fixed else f"{one.support_stiffness:g} Nm/rad")
     return [
-        b.Cell(one.name.replace("_", " "), _MEANINGS.get(one.name, "")), ", ".join(at),
+        b.Cell(*_MEANINGS.get(one.name, (one.name.replace("_", " "),))), ", ".join(at),
         f"{one.value:.4g} {one.unit}".rstrip(),
         f"{one.low:.4g} to {one.high:.4g}", str(one.n_recordings),
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Maps of labels and levels over speed and interference.
+"""Maps of labels over speed and interference.
 
 Axes are numeric. The cell of a point ends half-way to its neighbours; adjacent cells of one label
 are one area. Spots have sounds.
@@ -13,24 +13,10 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.base.labels import Look
 from noise.pages.cards import round_ticks
 
 MAP_SIZE = (500.0, 300.0)
 """Width and largest height of a map [px]."""
-
-LEVEL_STEPS = (50.0, 60.0, 70.0, 80.0, 90.0)
-"""Bounds of the level colours [dB(A)]."""
-
-LEVELS = {
-    "level-0": Look("#fdf1cf", "#8a6d2f", "plain", "below 50"),
-    "level-1": Look("#fccf96", "#8a6d2f", "plain", "50 to 60"),
-    "level-2": Look("#f89b6c", "#7a3600", "plain", "60 to 70"),
-    "level-3": Look("#dd5f6b", "#6b1f2e", "plain", "70 to 80"),
-    "level-4": Look("#a63a80", "#4b1d3e", "plain", "80 to 90"),
-    "level-5": Look("#5e2379", "#2b0d3e", "plain", "90 and more"),
-}
-"""Looks of the level steps, from soft to loud."""
 
 _MOST_TICKS, _FEWER_TICKS, _SHORT = 7, 4, 4
 """Numbers on an axis; fewer where one has more characters than the last."""
@@ -192,8 +178,6 @@ class ConditionMap:
         Height [px].
     design : int
         Index of the design.
-    levels : tuple of Area
-        Areas by keys of `LEVELS`, and ``none``.
     """
 
     title: str
@@ -205,4 +189,3 @@ class ConditionMap:
     across: str = "Speed"
     height: float = MAP_SIZE[1]
     design: int = 0
-    levels: tuple[Area, ...] = ()

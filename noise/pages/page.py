@@ -20,7 +20,7 @@ from noise.base.labels import LABEL_LOOKS
 from noise.pages import blocks as b
 from noise.pages.cards import draw_entries, frequency_ticks, scale_picture
 from noise.pages.clips import Clip, Entry
-from noise.pages.maps import LEVELS, MAP_SIZE, ConditionMap
+from noise.pages.maps import MAP_SIZE, ConditionMap
 
 
 def page_html(
@@ -151,8 +151,7 @@ def _environment() -> Environment:
     environment.globals |= {
         "label_display": LABEL_LOOKS,
         "frequencies": frequency_ticks(),
-        "map_marks": {name: look.mark for name, look in (LABEL_LOOKS | LEVELS).items()},
-        "levels": LEVELS,
+        "map_marks": {name: look.mark for name, look in LABEL_LOOKS.items()},
         "map_size": tuple(round(length) for length in MAP_SIZE),
         "scale": scale_picture,
     }

@@ -107,7 +107,6 @@ def review(
     *,
     title: str = "Review",
     full_scale: float | None = None,
-    pascal_per_full_scale: float | None = None,
     seconds: float = 10.0,
     megabytes: float = 40.0,
     classify: bool = True,
@@ -124,9 +123,6 @@ def review(
     title : str
     full_scale : float, optional
         Sound pressure of a full-scale sample of the recordings [Pa]; wins over what they say.
-    pascal_per_full_scale : float, optional
-        Of the page, for a listening room that is calibrated to it [Pa]; by default what the
-        loudest of all calibrated sounds needs. Either way they have one gain.
     seconds : float
         Longest stretch of a recording that is played [s].
     megabytes : float
@@ -183,7 +179,7 @@ def review(
             entries[f"s{len(entries) + 1}"] = entry
     if not entries:
         raise ParameterError(f"{refused[0].name}: {refused[0].reason}; there is nothing else")
-    gain = common_gain(entries.values(), pascal_per_full_scale)
+    gain = common_gain(entries.values())
     clips = make_clips(entries, gain)
     counts = label_counts(entries.values())
     refusals = b.Items([(one.name, one.reason) for one in refused])

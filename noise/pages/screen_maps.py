@@ -9,7 +9,6 @@ each combination of noises; a click anywhere else plays the nearest of these.
 from __future__ import annotations
 
 import math
-from bisect import bisect
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,19 +22,11 @@ from features.kernels.levels import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible
-from noise.base.labels import LABEL_LOOKS, NAMED, PERSISTS, Look
+from noise.base.labels import NAMED, PERSISTS
 from noise.base.progress import counted, track
 from noise.batch.work import one_thread
 from noise.pages.clips import RATE, Entry
-from noise.pages.maps import (
-    LEVEL_STEPS,
-    LEVELS,
-    MAP_SIZE,
-    ConditionMap,
-    Spot,
-    areas_of,
-    axis_of,
-)
+from noise.pages.maps import MAP_SIZE, ConditionMap, Spot, areas_of, axis_of
 from noise.pictures.figure import support_words
 from noise.screening.mapping import BEYOND, REFINED, UNCHANGED
 from noise.screening.point import swing
@@ -70,9 +61,6 @@ _HOW_WORDS = {
 
 _LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
 """Height of a map: base and increment per interference [px]."""
-
-_MAP_BYTES, _AREA_BYTES = 12_000.0, 250.0
-"""Maximum sizes of a map and of an area [byte]."""
 
 
 @dataclass(frozen=True)
@@ -220,18 +208,6 @@ class Compared:
     places: tuple[PlaceMaps, ...]
     pair: tuple[int, int]
 
-    @property
-    def weight(self) -> float:
-        """Maximum size of the maps on a page [byte]."""
-        maps = [one for place in self.places for one in place.maps]
-        n_areas = sum(len(one.areas) + len(one.levels) for one in maps)
-        return _MAP_BYTES * len(maps) + _AREA_BYTES * n_areas
-
-    @property
-    def looks(self) -> dict[str, Look]:
-        """Looks of labels and levels."""
-        return LABEL_LOOKS | LEVELS
-
 
 def compare_designs(
     screening: Screening,
@@ -359,11 +335,6 @@ def _map(
     height = min(MAP_SIZE[1], _LEAST_HEIGHT + _ROW_HEIGHT * len(grid.interference))
     across = axis_of(grid.speed)
     up = axis_of([round(1e3 * fit, 9) for fit in grid.interference], named_over=height)
-    steps = [
-        ["none" if name == "none" or math.isnan(value) else f"level-{bisect(LEVEL_STEPS, value)}"
-         for name, value in zip(*of, strict=True)]
-        for of in zip(label.tolist(), level.tolist(), strict=True)
-    ]  # fmt: skip
     spots = []
     for at, keys in points:
         if not keys[own]:
@@ -383,7 +354,6 @@ def _map(
         design.design, across, up, areas_of(label, across, up, height), tuple(spots),
         f"No sounds: {silent}." if silent else "",
         "Largest speed" if grid.frequency else "Speed", height, names.index(design.design),
-        areas_of(steps, across, up, height),
     )  # fmt: skip
 
 

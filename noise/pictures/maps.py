@@ -232,7 +232,7 @@ def _name_fits(axes: Axes, mapped: DesignMap) -> None:
 
 def _say_quiet(axes: Axes, mapped: DesignMap, temperature: int, support: int) -> None:
     if (mapped.label[temperature, support] == "none").all():
-        axes.text(0.5, 0.5, "quiet", transform=axes.transAxes, ha="center", va="center")
+        axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", va="center")
 
 
 def _handles(*panels: Axes) -> list[Patch | Line2D]:

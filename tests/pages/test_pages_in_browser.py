@@ -232,18 +232,3 @@ def test_a_click_on_the_other_map_changes_over_without_a_jump(shown):
     assert after == pytest.approx(before, abs=0.03)
     opened.page.wait_for_function("() => engine.gains.b === 1 && engine.gains.a === 0")
     assert opened.state()["title"].startswith(f"{NEW}: ")
-
-
-def test_maps_show_noises_or_levels(shown):
-    opened = shown(screened)
-    drawn = opened.page.locator("[data-map][data-design='0'] svg")
-    words = {"noise": r"Cr|Sk|P|quiet", "level": r"\d\d .*|below 50|quiet"}
-    for look, pattern in words.items():
-        opened.page.locator(f"[data-look='{look}']").click()
-        texts = drawn.locator("text:visible").all_text_contents()
-        assert [text for text in texts if not re.fullmatch(pattern, text)] == []
-        fills = drawn.locator("rect:visible").evaluate_all(
-            "(all) => all.map((one) => one.getAttribute('fill')).join()"
-        )
-        assert {"noise": "squawk", "level": "level-"}[look] in fills
-        assert accessibility_errors(opened.page) == []

@@ -62,18 +62,6 @@ def test_sounds_keep_their_levels_to_one_another_and_to_the_stated_full_scale(ca
         assert level(heard[inside] * full_scale) == pytest.approx(wanted, abs=0.02)
 
 
-def test_a_full_scale_that_is_set_is_level_true_and_one_that_clips_is_refused(campaign):
-    out = campaign / "review.html"
-    page = Page(review(campaign, out, pascal_per_full_scale=20.0).path)
-    assert (
-        "Calibrated sounds are level-true: full scale = 20 Pa (120 dB peak re 20 µPa)" in page.html
-    )
-    squeal, _ = page.sound("recordings/squeal")
-    assert np.abs(squeal).max() == pytest.approx(0.01, rel=0.02)
-    with pytest.raises(ParameterError, match=r"creak.*would clip at 0.1 Pa"):
-        review(campaign, out, pascal_per_full_scale=0.1)
-
-
 def test_what_is_not_calibrated_has_a_gain_of_its_own_and_says_so(tmp_path, campaign):
     write_recording(campaign / "phone.wav", recording("hiss", calibrated=False))
     soundfile.write(campaign / "phone.flac", 0.01 * sound("squeal"), RATE)
@@ -81,15 +69,6 @@ def test_what_is_not_calibrated_has_a_gain_of_its_own_and_says_so(tmp_path, camp
     assert "are not calibrated: how loud they were is not known" in page.html
     assert np.abs(page.sound("phone.wav")[0]).max() > 0.9
     assert np.abs(page.sound("recordings/creak")[0]).max() > 0.7
-
-
-def test_flac_gives_a_tone_back_within_half_a_step(campaign):
-    page = Page(review(campaign, campaign / "review.html", pascal_per_full_scale=1.0).path)
-    heard, _ = page.sound("recordings/squeal")
-    error = (heard - sound("squeal", 3.0))[RATE // 10 : -RATE // 10]
-    assert np.abs(error).max() <= 0.51 / 2**15
-    at_the_tone = np.abs(np.exp(-2j * np.pi * TONE / RATE * np.arange(error.size)) @ error)
-    assert 2.0 * at_the_tone / error.size < 1e-6
 
 
 def test_of_many_recordings_shorter_stretches_are_played(tmp_path):
@@ -229,8 +208,6 @@ def test_two_sounds_of_one_title_neither_clip_nor_wrap_whichever_is_louder():
             assert gain.calibrated * heard == pytest.approx(
                 entry.sound, abs=gain.calibrated / 2**15
             )
-        with pytest.raises(ParameterError, match="run: would clip at 1 Pa"):
-            common_gain(entries.values(), 1.0)
 
 
 def test_a_sound_beyond_full_scale_is_clipped_and_does_not_wrap():

@@ -101,4 +101,4 @@ def test_what_is_quiet_is_named(found):
         [text.get_text() for panel in plot_screen(one).axes for text in panel.texts]
         for one in found.maps
     ]
-    assert told == [[], ["quiet"] * 4]
+    assert told == [[], ["none"] * 4]

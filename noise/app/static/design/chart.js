@@ -43,16 +43,12 @@ export class Chart {
       this.legend = `${answer.found.legend}.`;
       this.box.classList.remove("old");
       this.box.innerHTML = answer.found.html; // as on pages
-      this.#mark(detail < DETAILS - 1 ? answer.found.spacing : "");
+      const isPreview = detail < DETAILS - 1; // near its boundaries it may differ from what is heard
+      this.box.classList.toggle("preview", isPreview);
+      if (isPreview) this.box.querySelector(".plot").append(made("p", { className: "uncertain", textContent: "Preview" }));
       this.point();
     }
     this.said.textContent = `${this.legend} At constant speed, for this support and temperature; partly simulated, partly from stability analysis.`;
-  }
-
-  // Mark a map that is not the finest: what is heard may differ from it near its boundaries.
-  #mark(spacing) {
-    this.box.classList.toggle("preview", Boolean(spacing));
-    if (spacing) this.box.querySelector(".plot").append(made("p", { className: "uncertain", textContent: `Preview: boundaries are uncertain by ${spacing}` }));
   }
 
   // Show the current point on the map.

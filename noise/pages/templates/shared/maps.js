@@ -5,14 +5,14 @@ if (document.getElementById("designs")) (function () {
   const at = (spot) => [parseFloat(spot.style.left) / 100, parseFloat(spot.style.bottom) / 100];
   const spotsOf = (map) => [...map.querySelectorAll(".spot")];
   const designOf = (map) => Number(map.dataset.design);
-  let [a, b] = controls.dataset.pair.split(" ").map(Number), look = "noise";
+  let [a, b] = controls.dataset.pair.split(" ").map(Number);
 
   // Result at a point of a map in words: label and its area.
   function labelAt(map, x, y) {
     const { width, height } = map.querySelector(".plot svg").viewBox.baseVal, [left, top] = [x * width, (1 - y) * height];
     const inside = ({ x: { baseVal: from }, y: { baseVal: upper }, width: w, height: h }) =>
       from.value <= left && left <= from.value + w.baseVal.value && upper.value <= top && top <= upper.value + h.baseVal.value;
-    return [...map.querySelectorAll("[data-areas=noise] rect")].find(inside)?.dataset.label;
+    return [...map.querySelectorAll("rect.area")].find(inside)?.dataset.label;
   }
 
   // Words of a spot, of both designs if both are playable.
@@ -43,10 +43,7 @@ if (document.getElementById("designs")) (function () {
       map.style.order = design === a ? 0 : design === b ? 1 : 2;
       slot.hidden = a === b || (design !== a && design !== b);
       slot.textContent = design === a ? "A" : "B";
-      for (const areas of map.querySelectorAll(".areas")) areas.toggleAttribute("hidden", areas.dataset.areas !== look);
     }
-    for (const button of document.querySelectorAll("[data-look]")) button.setAttribute("aria-pressed", String(button.dataset.look === look));
-    document.querySelector("[data-key=level]").hidden = look !== "level";
   }
 
   // Play both designs in step; a click on the other map switches between them.
@@ -107,11 +104,6 @@ if (document.getElementById("designs")) (function () {
       for (const spot of spots) spot.setAttribute("aria-pressed", String(engine.key === spot.dataset.sound));
     });
   }
-  controls.addEventListener("click", ({ target }) => {
-    if (!target.dataset.look) return;
-    ({ look } = target.dataset);
-    update();
-  });
   controls.addEventListener("change", ({ target }) => {
     if (target.id === "design-a") choose(Number(target.value), b);
     if (target.id === "design-b") choose(a, Number(target.value));
