@@ -212,7 +212,7 @@ _BESIDE_EFFECTS = ("none", "parameters", "unknown")
 
 
 def likely_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
-    """Return the probabilities of the causes to show, the verdict first, and how many more there are.
+    """Return the probabilities of the likely causes, the verdict first, and the number of others.
 
     Examples
     --------

@@ -148,7 +148,7 @@ def test_a_slider_is_heard(browser, app):
 def test_a_coarse_map_and_a_former_name_say_so(browser, app):
     opened = DesignPage(browser, app)
     caption = opened.page.locator(".chart.preview .plot .uncertain")
-    caption.get_by_text("Preview: boundaries are uncertain by").wait_for(timeout=2e5)
+    caption.get_by_text("Preview").wait_for(timeout=2e5)
     faded = "getComputedStyle(document.querySelector('.chart.preview svg')).opacity < 1"
     assert opened.page.evaluate(faded)
     opened.play()
