@@ -100,20 +100,13 @@ def _refuse_hidden_packages() -> None:
     root = Path(__file__).resolve().parent.parent
     for name in ("models", "sim", "features"):
         spec = find_spec(name)
-        if spec is None:
-            raise ImportError(
-                f"package {name!r} of bushing-noise is missing; install bushing-noise again",
-                name=name,
-            )
-        places = [spec.origin] if spec.origin else list(spec.submodule_search_locations or ())
-        path = Path(places[0]).resolve()
-        if root / name not in (path, path.parent):
-            raise ImportError(
-                f"{path} hides the package {name!r} of bushing-noise; rename it, or work in a "
-                f"folder without it",
-                name=name,
-                path=str(path),
-            )
+        if spec is not None:
+            place = next(iter(spec.submodule_search_locations or ()), spec.origin)
+            if Path(str(place)).resolve() != root / name:
+                raise ImportError(
+                    f"{place} hides the package {name!r} of bushing-noise; rename it, or work in a "
+                    f"folder without it"
+                )
 
 
 _refuse_hidden_packages()

@@ -48,12 +48,11 @@ def atomic(target: str | Path) -> Iterator[Path]:
     'speed_rad_s'
     """
     target = Path(target)
-    place = _link_target(target)
+    place = _place(target, target)
     temporary = place.parent / f".{uuid.uuid4().hex}.part{target.suffix}"
     try:
         if place.is_dir():
             raise ParameterError(f"{target}: is a folder; name a file to write")
-        _refuse_device(place, target)
         place.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         temporary.replace(place)
@@ -87,8 +86,7 @@ def check_target(path: Path | None, option: str = "--out") -> None:
     """
     if path is None:
         return
-    _refuse_device(path, f"{option} {path}")
-    place = _link_target(path, option)
+    place = _place(path, f"{option} {path}")
     try:
         parent = next(one for one in place.absolute().parents if one.exists() or one.is_symlink())
     except OSError as error:
@@ -107,22 +105,16 @@ def check_target(path: Path | None, option: str = "--out") -> None:
         ) from None
 
 
-def _refuse_device(place: Path, label: object) -> None:
-    """Refuse a pipe or a device; `label` names the path in the message."""
+def _place(target: Path, where: object) -> Path:
+    """Return the path behind a symbolic link; refuse a circular link, a pipe and a device."""
+    try:
+        place = target.resolve() if target.is_symlink() else target
+    except (OSError, RuntimeError):
+        raise ParameterError(f"{where}: is a link that leads nowhere") from None
     with suppress(OSError):  # writing will raise the same error
         if place.exists() and not (place.is_file() or place.is_dir()):
-            raise ParameterError(f"{label}: is a pipe or a device; name a file to write")
-
-
-def _link_target(target: Path, option: str = "") -> Path:
-    """Return the path behind a symbolic link; it need not exist."""
-    if not target.is_symlink():
-        return target
-    try:
-        return target.resolve()
-    except (OSError, RuntimeError):
-        label = f"{option} {target}".lstrip()
-        raise ParameterError(f"{label}: is a link that leads nowhere") from None
+            raise ParameterError(f"{where}: is a pipe or a device; name a file to write")
+    return place
 
 
 @contextmanager
