@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.modal.hammer import Hit
-from models.errors import ParameterError, RecordingError
+from models.errors import ParameterError, RecordingError, naming
 from models.foreign_file import (
     LARGEST_TEXT,
     ForeignTable,
@@ -22,7 +22,7 @@ from models.foreign_file import (
     reading,
     refusing,
 )
-from models.recording import Channel, Recording
+from models.recording import Channel
 from models.units import CHANNEL_UNITS, quantity_of_unit
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.files import MIN_SAMPLES
@@ -38,13 +38,6 @@ _UNEVEN = 0.1  # tolerance of time stamps with few digits [sampling intervals]
 _ROUNDING = 1e-5  # relative tolerance of a sampling rate from such time stamps
 
 _ROLES = ("time", "force", "response")
-_QUANTITY_OF_NAME = {
-    "time": "time", "zeit": "time", "force": "force", "kraft": "force", "hammer": "force",
-    "acc": "acceleration", "beschl": "acceleration", "press": "pressure", "druck": "pressure",
-    "mic": "pressure", "vel": "velocity", "geschw": "velocity", "disp": "displacement",
-    "weg": "displacement", "torque": "torque", "moment": "torque",
-}  # fmt: skip
-"""Quantity by the start of a heading without a unit, in lower case."""
 
 
 def find_hits(paths: Iterable[Path]) -> list[Path]:
@@ -127,32 +120,14 @@ def read_hit(
         unit = CHANNEL_UNITS[kind or wanted.kind]
     else:
         recording = read_recording(path)
-        force = _channel(path, recording, "force")
-        name = response or _first_response(path, recording)
-        values, unit = _channel(path, recording, name), CHANNEL_UNITS[Channel(name).kind]
-        rate = recording.rate
+        if not recording.calibrated:
+            raise RecordingError(f"{path}: is not calibrated; a hit needs forces in N")
+        rows = [row for kind in RESPONSES if (row := recording.first(kind)) is not None]
+        name = response or (recording.channel_names[rows[0]] if rows else RESPONSES[0])
+        with naming(f"{path}: ", RecordingError):
+            force, values = recording["force"], recording[name]
+        rate, unit = recording.rate, Channel(name).unit
     return Hit(force * (1.0 if arm is None else arm), values, rate, str(path)), unit
-
-
-def _first_response(path: Path, recording: Recording) -> str:
-    """Return the name of the default response channel."""
-    for kind in RESPONSES:
-        row = recording.first(kind)
-        if row is not None:
-            return recording.channel_names[row]
-    have = ", ".join(recording.channel_names)
-    raise RecordingError(f"{path}: has no channel {' or '.join(RESPONSES)}; it has {have}")
-
-
-def _channel(path: Path, recording: Recording, name: str) -> NDArray[np.float64]:
-    """Return the samples of a channel."""
-    if not recording.calibrated:
-        raise RecordingError(f"{path}: is not calibrated; a hit needs forces in N")
-    try:
-        return recording[name]
-    except ParameterError:
-        have = ", ".join(recording.channel_names)
-        raise RecordingError(f"{path}: has no channel {name!r}; it has {have}") from None
 
 
 def _table(path: Path) -> tuple[NDArray[np.float64], str]:
@@ -193,9 +168,8 @@ def _in_si(path: Path, table: ForeignTable) -> tuple[NDArray[np.float64], str]:
     expected = (("time",), ("force",), RESPONSES)
     headings = zip(table.names, table.units, table.values.T, expected, strict=True)
     for name, unit, column, allowed in headings:
-        matches = (q for start, q in _QUANTITY_OF_NAME.items() if name.lower().startswith(start))
-        quantity, factor = quantity_of_unit(unit) or ("" if unit else next(matches, ""), 1.0)
-        if (unit and not quantity) or quantity not in ("", *allowed):
+        quantity, factor = quantity_of_unit(unit) or ("", 1.0)
+        if unit and quantity not in allowed:
             raise RecordingError(
                 f"{path}: column {name!r} is {quantity or 'in'} {unit!r}, expected time, force and "
                 "acceleration or pressure in this order, in units such as s, N, m/s^2, g, Pa"
