@@ -10,9 +10,10 @@ from __future__ import annotations
 import re
 import shlex
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
@@ -33,7 +34,7 @@ from noise.commands.options import (
 )
 
 if TYPE_CHECKING:
-    from noise.audio.render import Measured, Part
+    from noise.audio.render import Measured
 
 _LOWEST, _NARROWEST = 1.0, 1.01  # lower end [Hz], and upper over lower end, for stable filters
 
@@ -76,9 +77,7 @@ def run(options: Namespace) -> int:
         raise ParameterError("--ab puts two or more inputs behind one another; give a second one")
     folder = _folder(options, sources)
     check_target(options.out)
-    files = _files(options, sources, folder)
-    _check_overwrite(options.out, sources, files)
-    return _render(options, files, folder)
+    return _render(options, _files(options, sources, folder), folder)
 
 
 @dataclass(frozen=True)
@@ -90,17 +89,14 @@ class _Source:
     name : str
         Name of the sound; for a recording its relative path without suffix.
     make : callable
-        ``make(name)`` reads or simulates the pressure channel.
+        Reads or simulates the pressure channel.
     path : Path, optional
         Path of a recording.
-    notes : tuple of str
-        Notes to print before the simulation.
     """
 
     name: str
-    make: Callable[[str], Recording]
+    make: Callable[[], Recording]
     path: Path | None = None
-    notes: tuple[str, ...] = ()
 
 
 def _sources(options: Namespace) -> list[_Source]:
@@ -126,32 +122,26 @@ def _sources(options: Namespace) -> list[_Source]:
         )
     full_scale = full_scale_of(options)
     sources: list[_Source] = []
-    for text in options.inputs:
-        if text in simulated:
-            sources.append(_simulated(text, options))
+    notes: list[str] = []
+    for text in options.inputs or [""]:
+        names = {source.name.casefold() for source in sources}
+        if text in recorded:
+            sources += _recorded(Path(text), full_scale, names)
         else:
-            sources += _recorded(Path(text), full_scale)
-    if not options.inputs:
-        sources.append(_source(options.out.name.removesuffix(".wav"), options))
-    taken: set[str] = set()
-    for index, source in enumerate(sources):
-        name, number = source.name, 2
-        while name.casefold() in taken:
-            name, number = f"{source.name}-{number}", number + 1
-        taken.add(name.casefold())
-        sources[index] = replace(source, name=name)
-    _print_notes([source for source in sources if source.path is None])
+            name, values = _simulated(text, options)
+            source, its_notes = _run(_unique(name, names), values)
+            sources.append(source)
+            notes += its_notes
+    note(*dict.fromkeys(notes))
     return sources
 
 
-def _print_notes(sources: Sequence[_Source]) -> None:
-    """Print each note once; notes that do not apply to all runs name their runs."""
-    names_by_note: dict[str, list[str]] = {}
-    for source in sources:
-        for text in source.notes:
-            names_by_note.setdefault(text, []).append(source.name)
-    for text, names in names_by_note.items():
-        note(text if len(names) == len(sources) else f"{', '.join(names)}: {text}")
+def _unique(name: str, names: set[str]) -> str:
+    """Return a name, numbered if it is among others regardless of case, and add it to these."""
+    numbered = (name if number == 1 else f"{name}-{number}" for number in count(1))
+    unique = next(one for one in numbered if one.casefold() not in names)
+    names.add(unique.casefold())
+    return unique
 
 
 def _is_condition(text: str) -> bool:
@@ -159,7 +149,7 @@ def _is_condition(text: str) -> bool:
     return text.lstrip().startswith("-")
 
 
-def _recorded(path: Path, full_scale: float | None) -> list[_Source]:
+def _recorded(path: Path, full_scale: float | None, names: set[str]) -> list[_Source]:
     """Return the sources of a recording or a folder."""
     from noise.recordings import find_recordings
 
@@ -167,12 +157,14 @@ def _recorded(path: Path, full_scale: float | None) -> list[_Source]:
     if not recordings:
         raise ParameterError(f"{path}: there are no recordings in it")
     return [
-        _Source(str(Path(name).with_suffix("")), partial(_read, file, full_scale), file)
+        _Source(
+            _unique(str(Path(name).with_suffix("")), names), partial(_read, file, full_scale), file
+        )
         for file, name in recordings
     ]
 
 
-def _read(path: Path, full_scale: float | None, _: str) -> Recording:
+def _read(path: Path, full_scale: float | None) -> Recording:
     """Read the pressure of a recording."""
     from noise.audio.sound import pressure_recording
     from noise.recordings.files import open_blocks
@@ -189,12 +181,14 @@ class _ConditionParser(ArgumentParser):
         raise ParameterError(f"condition {self.prog!r}: {message.removeprefix('argument ')}")
 
 
-def _simulated(text: str, options: Namespace) -> _Source:
-    """Return the source of a rig file or a condition."""
+def _simulated(text: str, options: Namespace) -> tuple[str, Namespace]:
+    """Return name and condition of a rig file, of a condition, or of the options alone."""
+    if not text:
+        return options.out.name.removesuffix(".wav"), options
     if not _is_condition(text):
         if options.rig is not None:
             raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
-        return _source(Path(text).stem, _over(options, {"rig": Path(text)}))
+        return Path(text).stem, _over(options, {"rig": Path(text)})
     parser = _ConditionParser(prog=text, add_help=False, allow_abbrev=False)
     add_options(parser, [CONDITION])
     try:
@@ -202,7 +196,7 @@ def _simulated(text: str, options: Namespace) -> _Source:
     except ValueError as error:
         raise ParameterError(f"condition {text!r}: {error}") from None
     values = stated_options(parser.parse_args(words))
-    return _source(re.sub(r"[^\w.]+", "-", text).strip("-."), _over(options, values))
+    return re.sub(r"[^\w.]+", "-", text).strip("-."), _over(options, values)
 
 
 def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
@@ -213,22 +207,22 @@ def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
     return Namespace(**(merged | dict(values)))
 
 
-def _source(name: str, options: Namespace) -> _Source:
-    """Return the source of a simulated run."""
+def _run(name: str, options: Namespace) -> tuple[_Source, tuple[str, ...]]:
+    """Return the source of a simulated run, and its notes."""
     from noise.audio.sound import RATE
 
     # At the rate of the sound: the rate of the rig would cut a creak off at 15 kHz.
     arguments, notes = run_arguments(options, RATE)
 
     @cache
-    def simulated(name: str) -> Recording:
+    def simulated() -> Recording:
         from noise.audio.sound import pressure_recording
         from sim.run import simulate
 
         run = with_notes(simulate(**arguments), notes, arguments, name)
         return pressure_recording(replace(run, name=name))
 
-    return _Source(name, simulated, notes=notes)
+    return _Source(name, simulated), notes
 
 
 class _File(NamedTuple):
@@ -243,7 +237,7 @@ def _recordings(file: _File, band: tuple[float, float] | None) -> list[Recording
     """Read or simulate the recordings of a file, filtered to a band [Hz]."""
     from noise.audio.sound import pressure_recording
 
-    recordings = [source.make(source.name) for source in file.sources]
+    recordings = [source.make() for source in file.sources]
     return recordings if band is None else [pressure_recording(one, band) for one in recordings]
 
 
@@ -263,23 +257,23 @@ def _folder(options: Namespace, sources: list[_Source]) -> Path | None:
 
 
 def _files(options: Namespace, sources: list[_Source], folder: Path | None) -> list[_File]:
-    """Return the output files with their sources."""
+    """Return the output files with their sources; refuse to overwrite an input or its sidecar."""
     from noise.audio.render import audio_path
 
     if folder is not None:
-        return [_File(one.name, audio_path(folder / one.name), [one]) for one in sources]
-    target = audio_path(options.out)
-    return [_File(target.stem if options.ab else sources[0].name, target, sources)]
-
-
-def _check_overwrite(out: Path, sources: list[_Source], files: list[_File]) -> None:
-    """Refuse to overwrite an input or its sidecar."""
+        files = [_File(one.name, audio_path(folder / one.name), [one]) for one in sources]
+    else:
+        target = audio_path(options.out)
+        files = [_File(target.stem if options.ab else sources[0].name, target, sources)]
     inputs = [source.path for source in sources if source.path is not None]
     stems = {path.resolve().with_suffix("") for path in inputs}
     for _, target, _ in files:
         same = target.exists() and any(map(target.samefile, inputs))
         if same or target.resolve().with_suffix("") in stems:
-            raise ParameterError(f"--out {out} would overwrite the recording or its sidecar")
+            raise ParameterError(
+                f"--out {options.out} would overwrite the recording or its sidecar"
+            )
+    return files
 
 
 def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
@@ -302,42 +296,34 @@ def _render(options: Namespace, files: list[_File], folder: Path | None) -> int:
             continue
         measured[file.name] = sound
         noise_names[file.name] = [_noise_name(one) for one in recordings]
-        for text in dict.fromkeys(filter(None, map(_filter_note, sound.parts))):
-            say(f"{file.name}: {text}")
     scales = full_scales(
         measured, pascal=options.pascal_per_full_scale, matched=options.match_loudness
     )
-    unknown = [of.name for of in measured.values() if not of.calibrated]
+    unknown = [name for name, sound in measured.items() if not sound.calibrated]
     if unknown:
-        more = f" and {counted(len(unknown) - 1, 'other')}" if len(unknown) > 1 else ""
         note(
-            f"{unknown[0]}{more}: not calibrated, so how loud it was is not known; levels are in "
+            f"{', '.join(unknown)}: not calibrated, so how loud it was is not known; levels are in "
             "dBFS only (--calibrator or --full-scale gives a calibration)"
         )
     rows: list[dict[str, object]] = []
     for file in files:
         name, target = file.name, file.target
-        if name not in measured:
+        if name in refused:
             rows.append({"file": target.name, "error": refused[name]})
             continue
         sound, scale = measured[name], scales[name]
-        written, summary = render(
-            target, _recordings(file, options.band), sound, scale, gap=options.gap
-        )
+        recordings = _recordings(file, options.band)
+        written, summary = render(target, recordings, sound, scale, gap=options.gap)
         file_name = target.name if folder is None else target.relative_to(folder).as_posix()
-        rows += [
-            {"file": file_name, **row, "filter": _filter_note(part)}
-            for row, part in zip(written, sound.parts, strict=True)
-        ]
+        rows += [{"file": file_name, **row} for row in written]
         calibration = f"full scale is {scale.value:.4g} Pa; " * sound.calibrated
         say(f"{name}: {calibration}in the file {summary}")
-        several = len(sound.parts) > 1
         for part, noise_name in zip(sound.parts, noise_names[name], strict=True):
-            label = f"{name}: {part.about.name}" if several else name
+            label = f"{name}: {part.about.name}" if options.ab else name
             say(f"{label}: {noise_name}{part.assessment.words(scale.value)}")
         report(target, target.with_suffix(".json"))
     if folder is not None:
-        write_table(folder / "levels.csv", ("file", *COLUMNS, "filter", "error"), rows)
+        write_table(folder / "levels.csv", ("file", *COLUMNS, "error"), rows)
         report(folder / "levels.csv")
     return 1 if refused else 0
 
@@ -360,9 +346,3 @@ def _noise_name(recording: Recording) -> str:
     segment = file_label(segments)
     pitch = "" if segment.frequency is None else f"{segment.frequency:.0f} Hz, "
     return f"{segment.label}, {pitch}"
-
-
-def _filter_note(part: Part) -> str | None:
-    """Return the note on the filter of a part."""
-    last = part.about.notes[-1] if part.about.notes else ""
-    return last.removeprefix("filtered: ") if last.startswith("filtered: ") else None

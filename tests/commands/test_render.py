@@ -175,7 +175,7 @@ def test_of_a_set_each_thing_is_said_once_and_of_which_sound(tmp_path, capsys):
     render(*inputs, *given, "--out", tmp_path / "set")
     told = [line for line in capsys.readouterr().err.splitlines() if "note: " in line]
     assert len(set(told)) == len(told)
-    for start, part in (("", "temperature 80"), ("interference-0.5: ", "lies outside the fits"),
+    for start, part in (("", "temperature 80"), ("--interference 0.5", "lies outside the fits"),
                         ("change-critical_torque-x9999: ", "nothing slips in")):  # fmt: skip
         (line,) = [line for line in told if part in line]
         assert f"note: {start or part}" in line
