@@ -25,7 +25,7 @@ import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
-from itertools import islice
+from itertools import islice, product, zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
@@ -48,9 +48,6 @@ _LIBRARIES = {
 
 _LABEL_COLUMN = "label_source"
 """Column that identifies a label table."""
-
-_LONGEST_LINE = 1 << 20
-"""Characters of the first line of a JSON Lines file that are read for the columns."""
 
 
 def check_table_path(path: str | Path | None, columns: Collection[str] = (_LABEL_COLUMN,)) -> None:
@@ -206,11 +203,22 @@ def read_table(
             with path.open(encoding="utf-8-sig") as file:
                 return [], [parse_json(line) for line in file if line.strip()]
         lines, separator = _lines(path)
-        names = {name.casefold(): name for name in known}
-        header = [
-            names.get(name.strip().casefold(), name) for name in map(_cell_text, next(lines, ()))
-        ]
-        return [name for name in header if name], _row_dicts(header, lines, numbers, separator)
+        spelling = {name.casefold(): name for name in known}
+        header = [spelling.get(name.casefold(), name) for name in map(_cell_text, next(lines, ()))]
+        columns = [name for name in header if name]
+        if double := [name for name in columns if columns.count(name) > 1]:
+            raise ExcessError(f"has two columns {double[0]!r}")
+        rows: list[dict[str, object]] = []
+        for line in lines:
+            if not any(map(_cell_text, line)):
+                continue
+            outside = [c for c, name in zip_longest(line, header) if not name and _cell_text(c)]
+            if outside:
+                cell = _cell_text(outside[0])
+                raise ExcessError(f"row {len(rows) + 1} has {cell!r} in a column without a name")
+            rows.append({name: cell for name, cell in zip_longest(header, line) if name})
+        _replace_commas(rows, [name for name in numbers if name in columns], separator)
+        return columns, rows
 
 
 def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
@@ -223,47 +231,28 @@ def _lines(path: Path) -> tuple[Iterator[Sequence[object]], str]:
     return lines, form.separator
 
 
-def _row_dicts(
-    header: Sequence[str],
-    lines: Iterable[Sequence[object]],
-    numbers: Collection[str],
-    separator: str,
-) -> list[dict[str, object]]:
-    """Return the rows that are not empty as dictionaries by column."""
-    indices = {name: index for index, name in enumerate(header) if name}
-    if len(indices) < len(list(filter(None, header))):
-        raise ExcessError(f"has two columns {max(filter(None, header), key=header.count)!r}")
-    rows: list[dict[str, object]] = []
-    for line in lines:
-        if not any(map(_cell_text, line)):
-            continue
-        outside = (c for i, c in enumerate(line) if i >= len(header) or not header[i])
-        if cell := next(filter(None, map(_cell_text, outside)), ""):
-            raise ExcessError(f"row {len(rows) + 1} has {cell!r} in a column without a name")
-        rows.append({name: line[i] if i < len(line) else None for name, i in indices.items()})
-    _replace_commas(rows, [name for name in numbers if name in indices], separator)
-    return rows
-
-
 def _replace_commas(
     rows: Sequence[dict[str, object]], numbers: Sequence[str], separator: str
 ) -> None:
     """Replace decimal commas by points in place; refuse commas that may separate thousands."""
-    cells = [(row, name, str(row[name])) for row in rows for name in numbers]
-    signs = {sign: cell for _, _, cell in cells if (sign := _decimal_sign(cell.strip()))}
+    signs: dict[str, str] = {}
+    places, decimals = [], set()
+    for row, name in product(rows, numbers):
+        cell = _cell_text(row[name])
+        if (sign := _decimal_sign(cell)) is not None:
+            signs[sign] = cell
+            places.append((row, name, cell.replace(",", ".")))
+            decimals.add(len(cell.partition(",")[2]))
     if "," not in signs:
         return
-    parts = (cell.partition(",")[2] for _, _, cell in cells if "," in cell)
-    thousands = separator != ";" and all(len(part.strip()) == 3 for part in parts)
-    if "." in signs or thousands:
+    if "." in signs or (separator != ";" and decimals == {3}):
         other = f" and {signs['.']!r}" if "." in signs else ""
         raise ExcessError(
             f"has numbers such as {signs[',']!r}{other}, in which a comma may be the decimal sign "
             "or not; write them with a point"
         )
-    for row, name, cell in cells:
-        if _decimal_sign(cell.strip()):
-            row[name] = cell.strip().replace(",", ".")
+    for row, name, cell in places:
+        row[name] = cell
 
 
 def table_columns(path: Path) -> set[str]:
@@ -281,7 +270,7 @@ def table_columns(path: Path) -> set[str]:
         with reading(path, "table"):
             if path.suffix.lower() == ".jsonl":
                 with path.open(encoding="utf-8-sig") as file:
-                    first = parse_json(file.readline(_LONGEST_LINE) or "{}")
+                    first = parse_json(file.readline(1 << 20) or "{}")
                 return set(first) if isinstance(first, dict) else set()
             return set(map(_cell_text, next(_lines(path)[0], ()))) - {""}
     except BushingNoiseError:
@@ -317,7 +306,6 @@ def _table_cell(value: object) -> Cell:
 
 _MIN_CELLS, _CELLS_PER_BYTE = 200_000, 20
 """Largest number of cells of a workbook or Parquet file: a constant plus a number per byte."""
-
 
 _LONGEST_TEXT = 32_767
 """Characters of a cell in Excel at most."""
@@ -366,18 +354,16 @@ def _write_workbook(path: Path, columns: Sequence[str], rows: Iterable[Sequence[
     book = Workbook(write_only=True)
     sheet = book.create_sheet("table")
 
-    def plain(column: str, value: Cell) -> Any:
-        if not isinstance(value, str):
-            value = _csv_cell(column, value, ".") if value in (math.inf, -math.inf) else value
+    def plain(value: Cell) -> Any:
         if not isinstance(value, str):
             return value
         cell: Any = WriteOnlyCell(sheet)
         cell.value, cell.data_type = value[:_LONGEST_TEXT], "s"  # never a formula
         return cell
 
-    sheet.append([plain("", column) for column in columns])
+    sheet.append(list(map(plain, columns)))
     for row in rows:
-        sheet.append([plain(*cell) for cell in zip(columns, row, strict=True)])
+        sheet.append([plain(_infinity(*cell)) for cell in zip(columns, row, strict=True)])
     book.save(path)
 
 
@@ -409,7 +395,9 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[C
 
 
 _SEPARATORS = ",;\t|"
-_SEPARATOR_LINE = re.compile(r'"?sep=(.)', re.IGNORECASE)
+_HEADER = re.compile(r"(?!\W*(?:sep=|#|$))", re.IGNORECASE)
+"""Start of the header, behind comments, ``sep=;`` and lines of separators alone."""
+
 _FORMULA = re.compile(r"'*[=+\-@\t\r]")
 """Start of a formula, or of text that an apostrophe protects from being one."""
 
@@ -443,23 +431,16 @@ def _read_csv(content: bytes) -> tuple[_Form, Iterator[list[str]]]:
     text, encoding = _decoded(content)
     if "\0" in text:
         raise ValueError("is no text")
-    lines, separators, at = text.splitlines(keepends=True), _SEPARATORS, 0
-    for line in lines:
-        if named := _SEPARATOR_LINE.match(line):
-            separators = named[1] + _SEPARATORS
-        elif (bare := line.strip(" \t\r\n\"',;|")) and not bare.startswith("#"):
-            break
-        at += len(line)
-    head = text[at:].partition("\n")[0]
-    separator = max(separators, key=lambda one: len(next(csv.reader([head], delimiter=one), ())))
-    sample = islice(csv.reader(_file(text, at), delimiter=separator), 1, _DECIMAL_ROWS)
+    lines = text.splitlines(keepends=True)
+    start = next((i for i, line in enumerate(lines) if _HEADER.match(line)), len(lines))
+    head, table = "".join(lines[start : start + 1]), "".join(lines[start:])
+    separator = max(_SEPARATORS, key=lambda one: len(next(csv.reader([head], delimiter=one), ())))
+    sample = islice(csv.reader(_file(table), delimiter=separator), 1, _DECIMAL_ROWS)
     signs = [sign for row in sample for cell in row if (sign := _decimal_sign(cell))]
-    commas = 2 * signs.count(",") - len(signs)
+    commas = signs.count(",") - signs.count(".")
     decimal = "," if commas > 0 or (not commas and separator == ";") else "."
-    # Other separators are read only below a line ``sep=``, which is not written.
-    writable = separator if separator in _SEPARATORS else ","
-    form = _Form(encoding, writable, decimal, "\r\n" if "\r\n" in text else "\n")
-    rows = csv.reader(_file(text, at), delimiter=separator, strict=True)
+    form = _Form(encoding, separator, decimal, "\r\n" if "\r\n" in text else "\n")
+    rows = csv.reader(_file(table), delimiter=separator, strict=True)
     return form, ([_without_apostrophe(cell) for cell in row] for row in rows)
 
 
@@ -474,9 +455,9 @@ def _decoded(content: bytes) -> tuple[str, str]:
         return content.decode("cp1252", "replace"), "utf-8-sig"
 
 
-def _file(text: str, at: int) -> io.StringIO:
-    """Return the text from a position on as a file for the csv module."""
-    return io.StringIO(text[at:], newline="")
+def _file(text: str) -> io.StringIO:
+    """Return a text as a file for the csv module."""
+    return io.StringIO(text, newline="")
 
 
 def _without_apostrophe(cell: str) -> str:
@@ -506,6 +487,12 @@ def _csv_cell(column: str, value: Cell, decimal: str) -> Cell:
         return f"'{value}" if _FORMULA.match(value) and not _NUMBER.fullmatch(value) else value
     if isinstance(value, bool):
         return json.dumps(value)
+    value = _infinity(column, value)
+    return str(value).replace(".", decimal) if isinstance(value, float) else value
+
+
+def _infinity(column: str, value: Cell) -> Cell:
+    """Return ``fixed`` for the infinite stiffness of a bolted clamp, and nothing for others."""
     if isinstance(value, float) and math.isinf(value):
         return "fixed" if value > 0.0 and column.startswith(_SUPPORT) else None
-    return str(value).replace(".", decimal) if isinstance(value, float) else value
+    return value

@@ -116,7 +116,6 @@ READ = {
     "bars": lambda rows: plain(rows, "|"),
     "sep=,": lambda rows: plain(rows, head="sep=,\n"),
     "sep=; of German Excel": lambda rows: german(rows, head="\ufeffsep=;\r\n"),
-    "sep of another sign": lambda rows: plain(rows, "^", head="sep=^\n"),
     "a comment first": lambda rows: plain(rows, head="# J.D., 1 March\n"),
     "a comment as a row": lambda rows: plain(rows, ";", head="# J.D.;;;;;;\n"),
     "a blank line first": lambda rows: plain(rows, head="\n"),
