@@ -8,7 +8,6 @@ import pytest
 
 from models.errors import ParameterError
 from noise.base.files import atomic, check_target
-from noise.commands.options import check_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,15 +59,3 @@ def test_a_link_in_a_circle_and_a_pipe_are_no_files_to_write(tmp_path):
             path.write_text("new")
         with pytest.raises(ParameterError, match=f"^--out .*{name}: .*{reason}"):
             check_target(tmp_path / name)
-
-
-def test_a_link_is_refused_before_the_work_where_nothing_can_be_written_behind_it(tmp_path):
-    (tmp_path / "file").write_text("no folder")
-    (tmp_path / "a.csv").symlink_to(tmp_path / "file" / "a.csv")
-    with pytest.raises(ParameterError, match="file is a file, not a folder"):
-        check_target(tmp_path / "a.csv")
-    (tmp_path / "folder").symlink_to(tmp_path / "gone")
-    for refuses in (lambda: check_target(tmp_path / "folder" / "a.csv"),
-                    lambda: check_folder(tmp_path / "folder")):  # fmt: skip
-        with pytest.raises(ParameterError, match=r"folder.*links to nothing"):
-            refuses()

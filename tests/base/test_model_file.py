@@ -10,7 +10,7 @@ import pytest
 
 from models.errors import ParameterError
 from noise.base.model_file import ModelKind, load_model, save_model
-from noise.base.trees import BoostedTrees, QuantileForest
+from noise.base.trees import BoostedTrees
 from noise.classifier import load_classifier
 from noise.diagnosis.causes.posterior import load_posterior
 from noise.inference import load_inference
@@ -97,21 +97,8 @@ def test_trees_that_cannot_be_evaluated_are_refused(changed, said):
         stump(**changed).check(1)
 
 
-def test_a_forest_whose_values_are_out_of_order_is_refused():
-    arrays = load_inference().forests[0].arrays()
-    leaf = arrays["feature"] == -1
-    arrays["following"] = np.where(leaf, arrays["following"][::-1], arrays["following"])
-    with pytest.raises(ValueError, match="fit together"):
-        QuantileForest.of_arrays(arrays)
-
-
 def test_scores_do_not_depend_on_how_many_rows_there_are():
     classifier = load_classifier()
     trees = classifier.trees
     x = np.random.default_rng(0).normal(size=(3000, len(classifier.feature_names)))
     assert np.array_equal(trees.scores(x)[2990:], trees.scores(x[2990:]))
-
-
-def test_a_header_of_many_megabytes_is_refused_before_it_is_parsed(path):
-    np.savez_compressed(path, header=np.array("[" * (5 << 20)), value=np.arange(3.0))
-    assert "holds a header of 21 MB" in refusal(path)

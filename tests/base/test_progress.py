@@ -66,20 +66,6 @@ def test_a_terminal_shows_how_many_steps_are_done_and_left_and_keeps_the_lines(t
     assert "grading goes well\r\n" in shown
 
 
-def test_an_error_ends_the_bar(terminal):
-    def fails():
-        with steps("screening", 2) as tell:
-            tell("mapping")
-            raise RuntimeError
-
-    def work():
-        with pytest.raises(RuntimeError):
-            fails()
-        say("told")
-
-    assert terminal.shows(work).endswith("told\r\n")
-
-
 def test_a_file_gets_the_lines_alone(monkeypatch):
     stream = in_file(monkeypatch)
     work()

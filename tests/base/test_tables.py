@@ -46,20 +46,6 @@ def test_other_endings_are_refused(tmp_path, name):
         check_table_path(tmp_path / name)
 
 
-def test_a_table_that_fails_half_way_leaves_the_old_one(tmp_path):
-    target = tmp_path / "t.csv"
-    target.write_text("old")
-
-    def rows():
-        yield {"a": 1}
-        raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        write_table(target, ["a"], rows())
-    assert target.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [target]
-
-
 NAMES = ("=1+1.wav", "+r.wav", "-2.wav", "@r.wav", "'=r.wav", "ä; 1,5.wav", "'s.wav", r"a\x07b.wav")
 LEVELS = [{"file": name, "level_db": 59.9 + n, "count": n} for n, name in enumerate(NAMES)]
 
@@ -129,21 +115,6 @@ def test_the_signs_of_csv_are_found_one_by_one(tmp_path, content):
     path.write_text(content, encoding="utf-8", newline="")
     write_table(path, *read_table(path))
     assert path.read_bytes().decode() == content
-
-
-@pytest.mark.parametrize("content", [b"", b"\0", b"\x89PNG\0\0"])
-def test_what_is_no_csv_has_no_form(tmp_path, content):
-    path = tmp_path / "t.csv"
-    path.write_bytes(content)
-    write_table(path, ["a", "b"], [{"a": 1.5, "b": 2}])
-    assert path.read_bytes() == b"a,b\n1.5,2\n"
-
-
-def test_a_name_that_a_code_page_has_not_is_written_all_the_same(tmp_path):
-    path = tmp_path / "t.csv"
-    path.write_bytes("file;level_db\nT\xfcr.wav;1,5\n".encode("cp1252"))
-    write_table(path, ["file", "level_db"], [{"file": "\u30c9\u30a2.wav", "level_db": 2.5}])
-    assert path.read_text(encoding="utf-8-sig").splitlines()[1] == "\u30c9\u30a2.wav;2,5"
 
 
 def test_a_missing_library_is_told_with_the_command_that_installs_it(tmp_path, monkeypatch):

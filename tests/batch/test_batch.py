@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import multiprocessing
 import sys
-import tempfile
 from contextlib import closing
-from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.errors import ParameterError
 from noise.batch.journal import (
@@ -101,20 +98,6 @@ def test_a_journal_that_is_none_begins_again_with_a_note(work, jobs, tmp_path, c
     assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]
 
 
-@given(st.data())
-@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_a_journal_torn_anywhere_tells_nothing_wrong_and_can_be_gone_on_with(work, tmp_path, data):
-    folder = Path(tempfile.mkdtemp(dir=tmp_path))
-    jobs, table = make_jobs(folder, ("a", "c", "d")), folder / "t.csv"
-    keep(table, work, jobs)
-    path = journal_path(table)
-    path.write_bytes(path.read_bytes()[: data.draw(st.integers(0, path.stat().st_size - 1))])
-    computed = performed(work, jobs)
-    known = keep(table, work, jobs)
-    assert all(done in (None, computed[n]) for n, done in enumerate(known))
-    assert keep(table, work, jobs) == computed
-
-
 def test_a_changed_recording_or_sidecar_is_done_again(work, jobs, tmp_path):
     table = tmp_path / "t.csv"
     keep(table, work, jobs)
@@ -183,11 +166,3 @@ def test_results_of_another_version_are_not_used_and_a_line_says_so(tmp_path, mo
     monkeypatch.setattr("noise.batch.journal.RESULTS_VERSION", 2)
     assert call(tmp_path / "set", "same") is None
     assert "another program version; everything is computed again" in capsys.readouterr().err
-
-
-def test_a_call_that_is_refused_before_it_has_results_leaves_nothing(tmp_path):
-    (tmp_path / "there").mkdir()
-    for folder in ("there", "new"):
-        with pytest.raises(ParameterError), temporary_journal(tmp_path / folder / "set", "same"):
-            raise ParameterError("no such design")
-    assert [path.name for path in tmp_path.rglob("*")] == ["there"]

@@ -68,13 +68,6 @@ def test_every_option_is_explained_and_every_command_takes_a_seed(name):
         assert not has_default or "default: " in action.help
 
 
-def test_no_command_shows_what_there_is(capsys):
-    assert main([]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert all(name in err for name in COMMANDS)
-
-
 def failing(error):
     def simulate(*_, **__):
         warnings.warn("the rig is warm", UserWarning, stacklevel=1)
@@ -148,18 +141,3 @@ def test_an_interrupt_while_a_command_is_loaded_is_one_line(tmp_path, at):
         env={**os.environ, "AT": at, "PYTHONPATH": str(Path(__file__).parents[2])},
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (130, "bushing-noise: interrupted\n")
-
-
-def test_an_option_of_all_commands_may_stand_before_the_command(capsys):
-    assert main(["materials", "--quiet"]) == 0
-    behind = capsys.readouterr()
-    assert main(["--quiet", "materials"]) == 0
-    assert capsys.readouterr() == behind
-
-
-@pytest.mark.parametrize("command", [[], ["label"]])
-def test_help_is_a_command_as_well(command, capsys):
-    assert main([*command, "--help"]) == 0
-    option = capsys.readouterr()
-    assert main(["help", *command]) == 0
-    assert capsys.readouterr() == option

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-import noise
 from noise.batch.journal import journal_path
 from noise.cli import main
 from tests.helpers.batch_work import make_recordings
@@ -109,22 +108,3 @@ def test_interrupted_it_writes_what_it_did_and_ends_its_processes(tmp_path, caps
     assert len({line.split(",")[0] for line in table.read_text().splitlines()[1:]}) >= 5
     assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
     assert "of 20 recordings are done already" in capsys.readouterr().err
-
-
-def test_later_calls_do_only_what_is_new_or_changed(tmp_path, capsys):
-    make_recordings(tmp_path / "runs", 8, 2, 0.2)
-    table = tmp_path / "t.csv"
-    assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
-    first = tmp_path / "runs" / "day0" / "shift0" / "run0000.wav"
-    shutil.copy(first, tmp_path / "runs" / "new.wav")
-    (tmp_path / "runs" / "day2" / "shift2" / "run0002.json").write_text(
-        '{"conditions": {"speed_rad_s": 5.0}}'
-    )
-    capsys.readouterr()
-    assert main(["label", str(tmp_path / "runs"), "--out", str(table)]) == 1
-    said = capsys.readouterr().err
-    assert "5 of 9 recordings are done already" in said  # but for 2 refused, 1 new, 1 changed
-    assert main(["label", str(tmp_path / "runs"), "--out", str(tmp_path / "u.csv")]) == 1
-    assert table.read_bytes() == (tmp_path / "u.csv").read_bytes()
-    assert len(noise.label(tmp_path / "runs", out=tmp_path / "u.csv").refused) == 2
-    assert table.read_bytes() == (tmp_path / "u.csv").read_bytes()

@@ -74,16 +74,3 @@ def test_every_part_tells_the_levels_of_the_label_table(recorded, tmp_path):
     course = level_course(track)
     assert course["unit"] == "dB(A) re 20 µPa"
     assert max(course["levels"]) == pytest.approx(row["l_afmax_dba"], abs=0.011)
-
-
-def test_segments_have_the_levels_of_what_they_hold(tmp_path):
-    loud = 0.3 * np.sin(2.0 * np.pi * 2310.0 * np.arange(2 * 48_000) / 48_000)
-    path = pressure_file(tmp_path / "run", np.concatenate([hiss(3.0, 1e-3), loud, hiss(3.0, 1e-3)]))
-    rows = label(path)
-    assert len(rows) >= 3
-    track = SoundCache(open_paths([path])).track(0)
-    for row in rows:
-        found = bands(track, {"start": str(row["start_s"]), "end": str(row["end_s"])})
-        assert [found[name] for name in ("level", "level_a", "level_af_max")] == [
-            row[name] for name in LEVELS
-        ]

@@ -1,7 +1,5 @@
 """What results are in a notebook: a short print, a data frame of pandas, a picture on axes."""
 
-import sys
-
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -84,21 +82,6 @@ def test_frames_have_the_columns_of_the_files():
     frame = sweep().to_pandas()
     assert frame["speed_rad_s"].tolist() == [1.0, 5.0, 1.0, 5.0]
     assert frame["support_stiffness_Nm_rad"].tolist() == [2214.0, 2214.0, "fixed", "fixed"]
-
-
-def test_missing_pandas_is_told_with_the_command_that_installs_it(monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[pandas\]"'):
-        label_table().to_pandas()
-
-
-def test_a_run_draws_the_stretch_asked_for():
-    axes = run().plot(Figure().subplots(), start=0.05, end=0.1)
-    for line in axes.lines:
-        time = line.get_xdata()
-        assert (time[0], time[-1]) == pytest.approx((0.05, 0.1), abs=1e-4)
-    with pytest.raises(ParameterError, match=r"hold nothing of a run of 0\.2 s"):
-        run().plot(Figure().subplots(), start=0.3, end=0.4)
 
 
 def test_a_recording_draws_its_sound_pressure_unless_another_channel_is_named():

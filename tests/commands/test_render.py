@@ -167,15 +167,3 @@ def test_rig_files_conditions_and_recordings_are_heard_back_to_back_at_one_gain(
     told = parts[0]["level_db"] - parts[1]["level_db"]
     assert 20 * np.log10(one.std() / other.std()) == pytest.approx(told, abs=0.1)
     assert abs(told) > 1.0
-
-
-def test_of_a_set_each_thing_is_said_once_and_of_which_sound(tmp_path, capsys):
-    inputs = ["--interference 0.279", "--interference 0.5", "--change critical_torque=x9999"]
-    given = ["--speed", "5", "--seconds", "0.1", "--temperature", "80"]
-    render(*inputs, *given, "--out", tmp_path / "set")
-    told = [line for line in capsys.readouterr().err.splitlines() if "note: " in line]
-    assert len(set(told)) == len(told)
-    for start, part in (("", "temperature 80"), ("--interference 0.5", "lies outside the fits"),
-                        ("change-critical_torque-x9999: ", "nothing slips in")):  # fmt: skip
-        (line,) = [line for line in told if part in line]
-        assert f"note: {start or part}" in line

@@ -136,10 +136,6 @@ def test_what_is_odd_is_told_in_one_line_and_kept(tmp_path, capsys, given, cause
     assert sum(cause in line for line in told) == 1, told
 
 
-def test_what_is_usual_is_told_of_nothing(tmp_path, capsys):
-    assert notes(tmp_path, capsys, *SHORT) == []
-
-
 def test_what_a_rig_file_says_of_its_sensors_is_recorded_and_noted(tmp_path, capsys):
     rig = tmp_path / "rig.toml"
     rig.write_text(
@@ -186,22 +182,6 @@ def test_recording_picture_and_sound_power_are_written_and_named(tmp_path, capsy
     levels = {band: float(level) for band, level, *_ in rows if level}
     assert max(levels, key=levels.get) == "total"
     assert levels["1000"] == pytest.approx(levels["total"], abs=1.0)  # a squeal
-
-
-def test_the_seed_and_the_rig_alone_decide_the_run(tmp_path):
-    (tmp_path / "copy.toml").write_text('base = "fluorocarbon"\n[tolerances]\ndamping = 0.1\n')
-    soft = 'base = "fluorocarbon"\n[change]\ndamping = "x2"\nageing_time = "-20 %"\n'
-    (tmp_path / "soft.toml").write_text(soft)
-
-    def samples(*given):
-        assert main(["simulate", *SHORT, *given, "--out", str(tmp_path / "run")]) == 0
-        return (tmp_path / "run.wav").read_bytes()
-
-    plain = samples("--seed", "3")
-    assert samples("--seed", "3", "--rig", str(tmp_path / "copy.toml")) == plain
-    assert samples("--seed", "4") != plain
-    changed = samples("--change", "damping=x2", "--change", "ageing_time=-20%")
-    assert samples("--rig", str(tmp_path / "soft.toml")) == changed != samples()
 
 
 ROAD = ["--oscillate", "6,2", "--seconds", "0.1"]

@@ -88,10 +88,3 @@ def check_agreement(name, seconds, rate, limit, but):
 @pytest.mark.parametrize("name", [*SOUNDS, "sawtooth"])
 def test_what_lies_below_7_khz_is_the_same_at_any_rate(name, rate):
     check_agreement(name, 1.0, rate, COMMON, set() if name == "creak" else RHYTHM)
-
-
-@pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("name", ["creak", "none"])
-def test_what_lies_above_changes_the_levels_only(name, rate):
-    but = {"level", "level_a", *(set() if name == "creak" else RHYTHM)}
-    check_agreement(name, 1.0, rate, 80e3, but)

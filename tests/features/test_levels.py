@@ -75,14 +75,6 @@ def noise(seconds=1.0, seed=0):
     return np.random.default_rng(seed).normal(size=round(RATE * seconds))
 
 
-def test_they_are_the_levels_that_a_meter_shows():
-    x = noise(2.0)
-    found, levels = feature_vector(x, RATE, "pressure"), sound_levels(x, RATE)
-    for name, level in levels.third_octaves.items():
-        value = found[f"third_octave_{name}"]
-        assert value == pytest.approx(level, abs=1e-6, nan_ok=True)
-
-
 def test_the_bands_of_the_thesis_hold_their_share_of_white_noise():
     found = feature_vector(noise(4.0), RATE, "pressure")
     for name, width in (("band_0_2000", 2000), ("band_2000_5000", 3000), ("band_5000_15000", 1e4)):

@@ -5,30 +5,12 @@ import math
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from scipy.signal import lfilter
 
 from features.kernels.slips import in_intervals, slip_intervals, torque_slips
-from features.prepared import prepare
-
-
-def acoustic_slips(x, rate):
-    return prepare(x, rate, "pressure").pulses
 
 
 def noise(n, seed=0):
     return np.random.default_rng(seed).normal(size=n)
-
-
-def creak(slips, rate=48e3, seconds=1.0):
-    """Impulses at the given times, ringing in four resonances."""
-    pulses = np.zeros(round(rate * seconds))
-    pulses[np.rint(np.asarray(slips) * rate).astype(int)] = 1.0
-    total = np.zeros(pulses.size)
-    for frequency, quality in ((940, 20), (2300, 20), (4800, 30), (6500, 30)):
-        radius = math.exp(-math.pi * frequency / quality / rate)
-        turn = -2 * radius * math.cos(2 * math.pi * frequency / rate)
-        total += lfilter([1.0], [1.0, turn, radius**2], pulses)
-    return total
 
 
 def stick_slip(frequency, rate=30e3, seconds=1.0, drop=2.7, kinetic=8.0, slip=0.1):
@@ -36,18 +18,6 @@ def stick_slip(frequency, rate=30e3, seconds=1.0, drop=2.7, kinetic=8.0, slip=0.
     phase = (frequency * np.arange(round(rate * seconds)) / rate) % 1.0
     up = np.minimum(phase / (1 - slip), 1.0) - np.maximum(phase - (1 - slip), 0.0) / slip
     return kinetic + drop * up
-
-
-@pytest.mark.parametrize("rate", [16e3, 30e3, 44.1e3, 96e3])
-@pytest.mark.parametrize("slips_a_second", [10, 80, 155])
-def test_each_slip_of_a_creak_is_one_pulse(rate, slips_a_second):
-    slips = np.arange(0.03, 0.97, 1 / slips_a_second)
-    found = acoustic_slips(creak(slips, rate), rate)
-    assert found.times.size == slips.size
-    assert np.abs(found.times - slips).max() < 2e-3
-    assert found.irregularity < 0.05
-    assert abs(found.glide) < 0.05
-    assert found.rate == pytest.approx(slips.size / 0.96, rel=1e-3)
 
 
 @settings(max_examples=60)

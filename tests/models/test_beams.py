@@ -13,7 +13,7 @@ from scipy.special import mathieu_modsem1, mathieu_modsem2, mathieu_sem
 from models.bench import Beams, Microphone
 from models.errors import ParameterError
 from models.radiation.rayleigh import SOUND_SPEED
-from models.radiation.rig_response import beams_pressure, strip_section
+from models.radiation.rig_response import strip_section
 from models.structure.beams import (
     ACCELERATION,
     ANCHOR_FORCE,
@@ -37,12 +37,6 @@ STEEL = Beams(25.4e-3, 3.175e-3, 0.0449, 2e11, 8000.0, 0.005, 0.4)
 J_C = 1 / 1200
 
 stiffnesses = st.floats(1500.0, 20e3)
-
-
-@given(st.floats(1.0, 1e7))
-def test_every_stiffness_has_its_beam_length(stiffness):
-    length = beam_length(STEEL, stiffness)
-    assert torsional_stiffness(STEEL, length) == pytest.approx(stiffness, rel=1e-9)
 
 
 @pytest.mark.parametrize("stiffness", [0.0, -2214.0, 1e-300, 1e300, math.inf, math.nan])
@@ -129,23 +123,8 @@ def test_the_modal_path_to_sensor_and_anchors_is_the_exact_one(beams, stiffness)
 # Anchors
 
 
-@given(st.floats(0.05, 0.2), st.floats(20.0, 1e6), st.floats(2e6, 1e12))
-@settings(max_examples=50)
-def test_anchors_that_yield_leave_less_stiffness_and_no_anchor_any(length, rotation, translation):
-    beams = replace(STEEL, anchor_rotation=rotation, anchor_translation=translation)
-    stiffness = torsional_stiffness(beams, length)
-    assert 0.0 < stiffness < torsional_stiffness(STEEL, length)
-    softer = replace(beams, anchor_rotation=0.9 * rotation, anchor_translation=0.9 * translation)
-    assert torsional_stiffness(softer, length) < stiffness
-    assert beam_length(beams, 2214.0) == beam_length(STEEL, 2214.0)
-
-
 RATE = 96e3
 CLAMP, MICROPHONE = (0.0, 0.12), Microphone((-0.2, 0.15, 0.5))
-
-
-def pressure(beams=STEEL, microphone=MICROPHONE, damping=0.02, n=2**15):
-    return beams_pressure(beams, 2214.0, 1 / 1200, damping, CLAMP, microphone, RATE, n, 40e3)
 
 
 def gain(width, height, frequency):
@@ -179,11 +158,6 @@ def test_a_thin_strip_sounds_as_the_exact_solution_says():
     exact = np.array([exact_strip(each) for each in ka])
     assert np.abs(20 * np.log10(np.abs(found / exact))).max() < 1.2
     assert np.abs(np.angle(found / exact, deg=True)).max() < 12.0
-
-
-def test_a_microphone_on_the_clamp_is_refused():
-    with pytest.raises(ParameterError, match="from the beams or the clamp; it must be at least"):
-        pressure(microphone=Microphone((0.01, 0.12, 0.07)))
 
 
 # In the rig

@@ -108,13 +108,3 @@ def test_warmth_shifts_rates_down_and_takes_damping_away(glass, reference, above
     assert rubber.log_shift(warm) < rubber.log_shift(cold)
     if warm < rubber.range[1]:  # beyond, entropy outgrows what the rates lose
         assert rubber.damping_factor(warm) < rubber.damping_factor(cold)
-
-
-@given(GLASS, ABOVE, st.floats(0.5, 90.0), st.floats(0.5, 90.0))
-def test_numbers_given_at_another_temperature_depend_as_before(glass, reference, between, last):
-    rubber = TemperatureDependence(glass + reference, glass, friction_peak=1.8)
-    between, last = glass + between, glass + last
-    again = rubber.at_reference(between)
-    for factor in ("stiffness_factor", "damping_factor"):
-        ways = getattr(rubber, factor)(between) * getattr(again, factor)(last)
-        assert ways == pytest.approx(getattr(rubber, factor)(last))

@@ -70,12 +70,6 @@ def test_another_support_stays_modelled(tmp_path, modelled):
         assert impulse_responses(rig, FIT, 3745.0, RATE, seconds=0.1) is other
 
 
-def test_a_response_that_ends_below_what_is_modelled_says_what_is_missing(tmp_path, modelled):
-    rig = rig_with(tmp_path, modelled, f=F[F <= 8000])
-    with pytest.warns(UserWarning, match="from 20 to 8000 Hz; above, up to 16000 Hz"):
-        impulse_responses(rig, FIT, 2214.0, RATE, seconds=0.3)
-
-
 def test_a_response_of_reversed_phase_is_refused(tmp_path, modelled):
     h = path_spectra(modelled, F).torque_to_acceleration.conj()
     rig = load_rig(written(tmp_path, a=(h, "m/s^2", F)))

@@ -126,14 +126,6 @@ def test_a_name_of_the_bushing_is_the_bushings_although_an_effect_has_one_alike(
     assert room.effects[0].parameters == {"length": 9.0}
 
 
-def test_a_name_that_means_several_quantities_is_refused_with_them(tmp_path):
-    text = 'effects = ["slip_pulse:amplitude=60", "mains_hum:amplitude=1"]\n[change]\n'
-    with pytest.raises(ParameterError, match=r"slip_pulse\.amplitude or mains_hum\.amplitude"):
-        loaded(tmp_path, text + 'amplitude = "x2"')
-    rig = loaded(tmp_path, text + 'mains_hum.amplitude = "x2"')
-    assert [effect.parameters["amplitude"] for effect in rig.effects] == [60.0, 2.0]
-
-
 # Sensors
 
 
@@ -226,13 +218,6 @@ def test_what_cannot_be_used_is_refused_in_one_line(tmp_path, text, parts):
 
 
 # Remarks
-
-
-def test_what_is_unusual_is_told():
-    rig = RIG.changed(critical_torque="x1000", kinetic_torque="x1000")
-    assert [line.split(" = ")[0] for line in remarks(rig)] == [
-        "critical_torque_Nm", "kinetic_torque_Nm",
-    ]  # fmt: skip
 
 
 # Writing

@@ -98,22 +98,6 @@ def test_a_csv_that_cannot_be_used_is_refused_by_column(tmp_path, text, message)
     assert message in refusal(path)
 
 
-@pytest.mark.parametrize("ending", ENDINGS)
-@pytest.mark.parametrize(
-    "content", [b"", b"\x00\xff garbage \n 1,2", b"    -1\n    58\n  bad\n    -1\n"]
-)
-def test_a_damaged_file_is_one_line(tmp_path, ending, content):
-    path = tmp_path / f"bad{ending}"
-    path.write_bytes(content)
-    refusal(path)
-
-
-def test_a_missing_library_names_the_command_that_installs_it(tmp_path, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "pyuff", None)
-    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[uff\]"'):
-        read(tmp_path / "beam.uff")
-
-
 W = 2j * np.pi * F
 DATASET_164 = (
     "    -1\n   164\n{:10}{:20}         2\n{:25.16e}{:25.16e}{:25.16e}\n{:25.16e}\n    -1\n"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import soundfile
-from hypothesis import given, strategies as st
 
 from models.errors import RecordingError
 from models.recording import Channel, Recording
@@ -14,7 +13,6 @@ from noise.labels.rows import label_rows
 from noise.labels.segments import label_recording
 from noise.recordings import read_recording, write_recording
 from noise.recordings.files import open_blocks
-from tests.helpers.logger_files import WRITERS, Wave
 
 RATE = 8000
 
@@ -43,18 +41,6 @@ def test_parts_are_those_of_the_whole_in_any_order(tmp_path, ending):
             np.concatenate([p.samples for p in blocks.track(1).pieces(10, 7990, 999)], axis=1),
             whole.samples[1:, 10:7990],
         )
-
-
-@given(st.integers(16, 4000), st.data())
-def test_any_part_of_any_file(tmp_path_factory, n, data):
-    path = tmp_path_factory.mktemp("any") / "run.wav"
-    samples = noise(3, 0.5)[:, :n]
-    soundfile.write(path, samples.T, RATE, subtype="DOUBLE")
-    with open_blocks(path) as blocks:
-        for _ in range(5):
-            first = data.draw(st.integers(0, n - 1))
-            last = data.draw(st.integers(first + 1, n))
-            np.testing.assert_array_equal(blocks.read(first, last), samples[:, first:last])
 
 
 @pytest.mark.parametrize("kinds", [("pressure", "angle"), ("torque", "speed"), ("acceleration",)])
@@ -86,18 +72,6 @@ def test_tracks_of_a_long_file_are_labelled_one_by_one(tmp_path):
     assert {segment.channel for segment in found} == {"1", "2"}
 
 
-def test_a_sample_that_is_no_number_is_found_where_it_is(tmp_path):
-    path = tmp_path / "run.wav"
-    samples = noise(1, 1.0)
-    samples[0, 6000] = np.nan
-    soundfile.write(path, samples.T, RATE, subtype="FLOAT")
-    with pytest.raises(RecordingError) as whole:
-        read_recording(path)
-    with open_blocks(path) as blocks, pytest.raises(RecordingError) as parts:
-        label_recording(blocks, load_classifier())
-    assert str(parts.value) == str(whole.value)
-
-
 def test_what_breaks_off_or_is_no_sound_is_refused_with_the_words_of_reading_the_whole(tmp_path):
     path = tmp_path / "run.wav"
     soundfile.write(path, noise(1, 1.0).T, RATE)
@@ -124,18 +98,3 @@ def test_mp3_does_not_click_where_it_is_read_in_parts(tmp_path, rate, channels):
         for _ in range(2):  # from the beginning again
             pieces = [piece.samples for piece in blocks.pieces(0, blocks.n_samples, 1777)]
             np.testing.assert_allclose(np.concatenate(pieces, axis=1), at_once, atol=1e-6)
-
-
-@pytest.mark.parametrize("ending", WRITERS)
-def test_parts_of_a_loggers_file_are_those_of_the_whole(tmp_path, ending):
-    x = noise(2, 1.0)
-    waves = [Wave("Arm", "N mm", 1e3 * x[0]), Wave("Oil", "degC", x[1]), Wave("mic", "Pa", x[1])]
-    path = WRITERS[ending](tmp_path / f"run{ending}", waves)
-    whole = read_recording(path)
-    with open_blocks(path) as blocks:
-        assert blocks is not None
-        assert (blocks.channels, blocks.rate) == (whole.channels, whole.rate)
-        assert (blocks.condition, blocks.calibrated) == (whole.condition, whole.calibrated)
-        assert blocks.n_samples == whole.samples.shape[1]
-        for first, last in [(0, 10), (300, 2000), (7000, 8000), (5, 320), (0, 8000)]:
-            np.testing.assert_array_equal(blocks.read(first, last), whole.samples[:, first:last])

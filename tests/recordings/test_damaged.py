@@ -19,8 +19,7 @@ import pytest
 import soundfile
 from hypothesis import HealthCheck, given, settings, strategies as st
 
-from models.errors import RecordingError
-from noise.recordings import find_recordings, read_recording
+from noise.recordings import read_recording
 from noise.recordings.formats.isolated import open_isolated
 from tests.helpers.files import refusal
 from tests.helpers.logger_files import WRITERS, Wave, uff
@@ -106,39 +105,6 @@ def test_what_fuzzing_found_is_refused(valid, tmp_path, monkeypatch, ending, dam
     assert reason in refusal_of(tmp_path, ending, damage(bytearray(valid[ending])))
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="counts memory in kB, as Linux does")
-@pytest.mark.parametrize("ending", WRITERS)
-def test_reading_takes_no_more_than_twice_the_file(tmp_path, ending):
-    rng = np.random.default_rng(1)
-    waves = [Wave(name, "Pa", rng.normal(size=4_000_000)) for name in ("a", "b", "c", "d")]
-    path = WRITERS[ending](tmp_path / f"large{ending}", waves)
-    small = WRITERS[ending](tmp_path / f"small{ending}", [Wave("a", "Pa", waves[0].samples[:99])])
-    code = (
-        "import resource, sys; from noise.recordings import read_recording;"
-        "peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024;"
-        "read_recording(sys.argv[1]); before = peak(); read_recording(sys.argv[2]);"
-        "print(peak() - before)"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", code, small, path], check=True, capture_output=True, text=True
-    )
-    assert int(result.stdout) < 2 * path.stat().st_size
-
-
-DATA = os.environ.get("BUSHING_NOISE_REAL_DATA")
-
-
-@pytest.mark.skipif(not DATA, reason="BUSHING_NOISE_REAL_DATA names no folder of real recordings")
-def test_every_real_sound_is_read():
-    found = find_recordings([Path(DATA) / "audio"])
-    assert len(found) == 49
-    for path, _ in found:
-        run = read_recording(path)
-        assert not run.calibrated
-        assert run.samples.shape == (soundfile.info(path).channels, soundfile.info(path).frames)
-
-
 # The process that reads
 
 X = np.sin(0.01 * np.arange(200_000))
@@ -166,36 +132,12 @@ def children(of=None):
 
 
 @LINUX
-def test_it_lives_on_from_file_to_file_whatever_they_are(path, tmp_path):
-    np.testing.assert_array_equal(read_recording(path)["torque"], 2 * X)
-    before = children()
-    (tmp_path / "bad.h5").write_bytes(b"no file of that sort")
-    with pytest.raises(RecordingError):
-        read_recording(tmp_path / "bad.h5")
-    read_recording(path)
-    assert children() == before
-
-
-@LINUX
 def test_a_file_that_is_open_and_the_next_do_without_the_process_that_read_the_last(path):
     with open_isolated(path) as raw:
         for pid in children():
             os.kill(pid, signal.SIGKILL)
         np.testing.assert_array_equal(raw.read(7, 99)[1], 2 * X[7:99])
     assert read_recording(path).samples.shape == (2, X.size)
-
-
-def test_two_files_are_open_at_once(path):
-    with open_isolated(path) as one, open_isolated(path) as other:
-        np.testing.assert_array_equal(one.read(7, 99), other.read(7, 99))
-
-
-def test_a_path_is_that_of_the_folder_where_it_is_named(path, monkeypatch):
-    read_recording(path)
-    monkeypatch.chdir(path.parent)
-    assert read_recording("run.h5").rate == 51200.0
-    with pytest.raises(RecordingError, match=r"^nowhere\.h5: there is no such file"):
-        read_recording("nowhere.h5")
 
 
 @LINUX
@@ -220,19 +162,3 @@ def test_a_process_that_may_start_no_other_reads_as_well(path):
     process.start()
     process.join(60.0)
     assert process.exitcode == 0
-
-
-@pytest.mark.slow
-def test_processes_that_share_the_work_read_the_same_and_say_no_more(path, tmp_path):
-    for ending, write in WRITERS.items():
-        write(tmp_path / f"run{ending}", [Wave("mic", "Pa", X)])
-    call = [sys.executable, "-m", "noise", "label", tmp_path, "--out"]
-    said = {
-        subprocess.run(
-            [*call, tmp_path / f"{n}.csv", "--workers", n],
-            check=True, capture_output=True, text=True,
-        ).stderr
-        for n in "12"
-    }  # fmt: skip
-    assert len(said) == 1
-    assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "2.csv").read_bytes()

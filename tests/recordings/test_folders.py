@@ -68,29 +68,6 @@ def test_what_is_no_file_is_told_of_by_the_reason_and_never_opened(day, tmp_path
     ]
 
 
-@pytest.mark.parametrize(
-    ("error", "told"),
-    [
-        (PermissionError(13, "Permission denied"), "left out day2: cannot be read"),
-        (FileNotFoundError(2, "No such file or directory"), ""),
-    ],
-)
-def test_a_folder_that_cannot_be_looked_into_or_goes_away_costs_no_other(
-    day, tmp_path, capsys, monkeypatch, error, told
-):
-    (tmp_path / "day2").mkdir()
-    listed = os.scandir
-
-    def refusing(place):
-        if Path(place).name == "day2":
-            raise type(error)(*error.args, str(place))
-        return listed(place)
-
-    monkeypatch.setattr(os, "scandir", refusing)
-    assert names(tmp_path) == ["day1/run07.wav", "day1/run08.wav"]
-    assert told in capsys.readouterr().err
-
-
 def test_recordings_that_are_not_read_are_named_once_with_what_to_do(day, tmp_path, capsys):
     others = ("memo.m4a", "MEMO2.WMA", "day1/a.aac", "day1/b.caf", "x.sie", "notes.txt", "p.pdf")
     for name in others:

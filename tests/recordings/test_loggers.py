@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 import soundfile
@@ -16,7 +14,7 @@ from asammdf import MDF, Signal
 from nptdms import ChannelObject, TdmsWriter
 
 from models.transfer_functions.uff import FREQUENCY_RESPONSE, UffFunction, write_uff_functions
-from noise.recordings import find_recordings, read_recording
+from noise.recordings import read_recording
 from noise.recordings.files import names_channels
 from tests.helpers.files import refusal
 from tests.helpers.logger_files import WRITERS, Wave, hdf5, mdf, tdms, uff
@@ -84,11 +82,6 @@ def test_the_sampling_rate_is_what_the_axis_states(name, tmp_path):
     run = read_recording(AXES[name](tmp_path))
     assert (run.rate, run.channel_names) == (RATE, ("pressure",))
     np.testing.assert_allclose(run.samples[0], X, atol=1e-9)
-
-
-def test_a_clock_may_tell_the_time_of_day(tmp_path):
-    stamps = DAY + 125 * np.arange(N) * np.timedelta64(1, "us")
-    assert read_recording(of(tdms, ("Zeit", stamps, {}), mic())(tmp_path)).rate == 8000.0
 
 
 def test_a_tdms_clock_goes_on_in_another_segment_than_its_channels(tmp_path):
@@ -202,12 +195,6 @@ APART = {
 @pytest.mark.parametrize("name", APART)
 def test_channels_that_were_not_sampled_together_are_refused(name, tmp_path):
     assert_refused(APART, name, tmp_path)
-
-
-def test_a_few_samples_more_are_cut_with_a_note(tmp_path):
-    run = read_recording(begins(0.0, 0.0, n=N - 3)(tmp_path))
-    assert run.samples.shape == (2, N - 3)
-    assert "between 4797 and 4800 samples; they are cut to the shortest" in run.notes[0]
 
 
 # --- the value: 1 Pa rms, or refused ------------------------------------------------------------
@@ -329,25 +316,6 @@ def write(request, tmp_path):
     return writer
 
 
-def test_channels_are_named_by_their_units_and_brought_to_si(write, tmp_path):
-    waves = {
-        "Arm": ("N mm", "torque", 1e-3),
-        "Clamp z": ("g", "acceleration", 9.80665),
-        "Mic 1": ("mPa", "pressure", 1e-3),
-        "Encoder": ("deg", "angle", np.pi / 180),
-        "Drive": ("rpm", "speed", np.pi / 30),
-        "Load": ("kN", "force", 1e3),
-        "Mic 2": ("Pa", "pressure_2", 1.0),
-    }
-    path = write(*(Wave(name, unit, X) for name, (unit, _, _) in waves.items()))
-    assert [found for found, _ in find_recordings(tmp_path)] == [path]
-    run = read_recording(path)
-    assert (run.rate, run.calibrated) == (51200.0, True)
-    assert set(run.channel_names) == {name for _, name, _ in waves.values()}
-    for _, name, factor in waves.values():
-        np.testing.assert_allclose(run[name], factor * X, rtol=1e-12, atol=1e-15)
-
-
 def test_a_sidecar_names_channels_and_conditions(write):
     slow = Wave("oil", "degC", X[:400], 10.0)
     path = write(Wave("a", "Pa", X), Wave("b", "V", 3 * X), slow)
@@ -405,12 +373,6 @@ def test_an_angle_goes_on_where_it_wraps(wrap, period, speed, tmp_path):
     assert abs(np.polyfit(t, run["angle"], 1)[0]) == pytest.approx(speed, rel=1e-3)
 
 
-def test_an_oscillation_over_the_end_of_a_turn_goes_on_as_well(tmp_path):
-    angle = 0.3 * np.sin(2 * np.pi * 20 * T)
-    run = read_recording(of(hdf5, mic(np.rad2deg(angle % TURN), "deg", fs=RATE))(tmp_path))
-    np.testing.assert_allclose(run["angle"] - run["angle"][0], angle - angle[0], atol=1e-9)
-
-
 def test_an_angle_that_jumps_otherwise_is_noted(tmp_path):
     angle = 5.0 * T + 3.3 * (np.arange(N) >= 2000)
     run = read_recording(of(hdf5, mic(angle, "rad", fs=RATE))(tmp_path))
@@ -436,28 +398,11 @@ def test_a_missing_library_is_named_with_the_command_that_installs_it(
     assert message.endswith(f'run: pip install "bushing-noise[{extra}]"')
 
 
-def test_no_library_of_a_format_is_loaded_before_its_file_turns_up():
-    code = (
-        "import sys, noise.recordings.files;"
-        "assert not {'h5py', 'asammdf', 'nptdms', 'pyuff'} & set(sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
 def test_an_older_mdf_file_is_refused_by_its_version(tmp_path):
     with MDF(version="3.30") as file:
         file.append([signal()])
         path = file.save(tmp_path / "run.mdf")
     assert "version '3.30', expected 4" in refusal(path)
-
-
-def test_an_hdf5_dataset_without_its_numbers_is_refused(tmp_path):
-    path, other = tmp_path / "run.h5", tmp_path / "other"
-    other.write_bytes(bytes(8000))
-    for n, external in ((10**12, None), (1000, [(str(other), 0, 8000)])):
-        with h5py.File(path, "w") as file:
-            file.create_dataset("torque", (n,), "f8", external=external).attrs["rate"] = 48e3
-        assert "'torque'" in refusal(path)
 
 
 def test_a_response_function_is_no_recording(tmp_path):
