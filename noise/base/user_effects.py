@@ -81,13 +81,18 @@ def _defined(path: Path) -> list[Effect]:
 
 @contextmanager
 def _error_location(where: str) -> Iterator[None]:
-    """Prefix errors of the user's code with their location."""
+    """Prefix errors of the user's code with `where`, and name the line of the user's file."""
     try:
         yield
     except BushingNoiseError as error:
         raise ParameterError(f"{where}: {error}") from None
     except (Exception, SystemExit) as error:
-        raise ParameterError(f"{where}: {type(error).__name__}: {one_line(error)}") from error
+        frames = traceback.extract_tb(error.__traceback__)
+        own = [frame for frame in frames if Path(frame.filename).name in where]
+        place = f" ({Path(own[-1].filename).name}, line {own[-1].lineno})" if own else ""
+        raise ParameterError(
+            f"{where}: {type(error).__name__}: {one_line(error)}{place}"
+        ) from error
 
 
 def _checked_effect(effect: Effect, where: str) -> Effect:
@@ -133,41 +138,31 @@ def _checked(
     ``expected(first)`` makes an array, or a dict of arrays, of the result's shape from the first
     argument; None is any length.
     """
-    import numpy as np
-
-    def check(result: Any, like: Any, what: str) -> None:
-        shape = (getattr(result if like is None else like, "size", 0),)
-        if not isinstance(result, np.ndarray) or result.shape != shape:
-            actual = getattr(result, "shape", type(result).__name__)
-            raise ParameterError(
-                f"{where} must return an array of shape {shape}, not {actual}{what}"
-            )
-        if result.dtype != np.float64 or not np.isfinite(result).all():
-            raise ParameterError(f"{where} must return finite numbers of type float64{what}")
 
     @wraps(function)
     def checked(first: Any, *others: object) -> Any:
-        try:
-            result = function(first, *others)
-        except BushingNoiseError:
-            raise
-        except Exception as error:
-            frames = traceback.extract_tb(error.__traceback__)
-            own = [one for one in frames if Path(one.filename).name in where]
-            frame = [*frames, *own][-1]
-            place = f"{Path(frame.filename).name}, line {frame.lineno}"
-            raise ParameterError(
-                f"{where}: {type(error).__name__}: {one_line(error)} ({place})"
-            ) from error
-        like = expected(first)
-        if not isinstance(like, dict):
-            check(result, like, "")
-        elif not isinstance(result, dict) or list(result) != list(like):
-            names = ", ".join(like)
-            raise ParameterError(f"{where} must return a dict of the signals it was given: {names}")
-        else:
-            for name, signal in like.items():
-                check(result[name], signal, f" for {name!r}")
+        with _error_location(where):
+            result, like = function(first, *others), expected(first)
+            if not isinstance(like, dict):
+                _check_array(result, like, "result")
+            elif not isinstance(result, dict) or list(result) != list(like):
+                raise ParameterError(
+                    f"must return a dict of the signals it was given: {', '.join(like)}"
+                )
+            else:
+                for name, signal in like.items():
+                    _check_array(result[name], signal, name)
         return result
 
     return checked
+
+
+def _check_array(result: Any, like: Any, name: str) -> None:
+    """Refuse anything but finite numbers of type float64, as many as in another array."""
+    import numpy as np
+
+    shape = (np.size(result),) if like is None else like.shape
+    if np.shape(result) != shape or getattr(result, "dtype", None) != np.float64:
+        raise ParameterError(f"must return a float64 array of shape {shape} as {name}")
+    if not np.isfinite(result).all():
+        raise ParameterError(f"must return finite numbers as {name}")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from models.errors import BushingNoiseError, ParameterError
 from models.foreign_file import one_line
 from noise.base.processes import spread_over_processes
-from noise.base.progress import readable
+from noise.base.progress import counted, readable, say
 from noise.base.tables import Cell, plain_cell
 from noise.recordings import find_recordings
 from noise.recordings.sidecar import find_sidecar
@@ -175,13 +175,9 @@ def file_identity(path: Path) -> list[int] | None:
 
 
 def perform_all(
-    work: Work,
-    jobs: Sequence[Job],
-    journal: Journal,
-    *,
-    workers: int = 1,
+    work: Work, jobs: Sequence[Job], journal: Journal, *, workers: int = 1
 ) -> Generator[tuple[Job, JobResult]]:
-    """Process recordings and store each result in the journal.
+    """Process recordings, except for those in the journal, and store each result there.
 
     Parameters
     ----------
@@ -195,7 +191,7 @@ def perform_all(
     Yields
     ------
     job : Job
-        In the order of completion.
+        Those in the journal first, the others in the order of completion.
     result : JobResult
 
     Raises
@@ -203,13 +199,19 @@ def perform_all(
     ParameterError
         The journal cannot be written.
     """
-    if not jobs:
-        return
+    remaining = []
+    for job in jobs:
+        if (earlier := journal.find(job)) is None:
+            remaining.append(job)
+        else:
+            yield job, earlier
+    if len(remaining) < len(jobs):
+        say(f"{len(jobs) - len(remaining)} of {counted(len(jobs), 'recording')} are done already")
     # The identity is taken before the content is read, which may change in between.
-    identities = [file_identity(job.path) for job in jobs]
-    with closing(_results(work, jobs, workers)) as results:
+    identities = [file_identity(job.path) for job in remaining]
+    with closing(_results(work, remaining, workers)) as results:
         for index, result in results:
-            job = jobs[index]
+            job = remaining[index]
             result = refusal(work, job.name, DIED) if result is None else result
             journal.add_result(job, identities[index], result)
             yield job, result

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import closing, nullcontext
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,6 @@ from noise.base.tables import check_table_path, write_table
 from noise.commands.options import MOST_WORKERS, Option, refuse, whole_number
 
 if TYPE_CHECKING:
-    from noise.batch.journal import Journal
     from noise.batch.work import Job, JobResult, Work
 
     Rows = list[dict[str, object]]
@@ -69,7 +68,7 @@ def run_batch(
         The table cannot be written.
     """
     from noise.batch.journal import open_journal
-    from noise.batch.work import table_rows
+    from noise.batch.work import perform_all, table_rows
 
     out = options.out
     # A table of forty columns is not readable on a terminal.
@@ -82,7 +81,8 @@ def run_batch(
     exit_code = 0
     with open_journal(out, work, fresh=options.fresh) as journal:
         try:
-            for job, result in _results(options, work, jobs, journal):
+            performed = perform_all(work, jobs, journal, workers=options.workers)
+            for job, result in track(performed, work.doing, total=len(jobs)):
                 results[job.index] = result
                 if result.error is not None:
                     refuse(result.error, job.path)
@@ -109,27 +109,6 @@ def run_batch(
     for path in written:  # standard output may be the table
         report(path) if out is not None else say(str(path))
     return exit_code or int(refused > 0)
-
-
-def _results(
-    options: Namespace, work: Work, jobs: Sequence[Job], journal: Journal
-) -> Iterator[tuple[Job, JobResult]]:
-    """Yield the results of earlier calls, then those of the remaining recordings."""
-    from noise.batch.work import perform_all
-
-    remaining = []
-    for job in jobs:
-        if (result := journal.find(job)) is None:
-            remaining.append(job)
-        else:
-            yield job, result
-    if len(remaining) < len(jobs):
-        number = len(jobs) - len(remaining)
-        say(f"{number} of {counted(len(jobs), 'recording')} are done already")
-    if not remaining:
-        return
-    with closing(perform_all(work, remaining, journal, workers=options.workers)) as results:
-        yield from track(results, work.doing, total=len(remaining))
 
 
 def _note_uncalibrated(results: Iterable[JobResult]) -> None:

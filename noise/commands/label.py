@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from argparse import Namespace
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from models.errors import ParameterError
 from noise.base.files import check_target, locked
@@ -17,10 +18,6 @@ from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
 from noise.commands.batch import BATCH, run_batch
 from noise.commands.options import CALIBRATION, Option, full_scale_of, number, one_of
-
-if TYPE_CHECKING:
-    from noise.labels.labelling import Labelling
-
 
 OPTIONS = (
     *BATCH,
@@ -59,25 +56,21 @@ def run(options: Namespace) -> int:
         sensitivity=options.sensitivity,
         surroundings=options.surroundings,
     )
-    _note_false_names(work)
+    if work.surroundings is not None or work.sensitivity != 1.0:
+        _note_false_names(work.false_names(), work.sensitivity)
     return run_batch(options, work, jobs, with_corrections, export, result_lines)
 
 
-def _note_false_names(work: Labelling) -> None:
-    """Print the rate of false names for given surroundings or a sensitivity other than 1."""
-    if work.sensitivity == 1.0 and work.surroundings is None:
-        return
-    counts = work.false_names()
-    nearest = min(counts, key=lambda s: abs(math.log(float(s) / work.sensitivity)), default=None)
-    if nearest is None:
-        note("the classifier's card does not say how many false names to expect")
-        return
-    rate = counts[nearest]
-    note(
-        f"at a sensitivity of {float(nearest):g}, real background sounds of these surroundings got "
-        f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} at "
-        f"95 %: {rate['names']} in {rate['hours']:g} h)"
-    )
+def _note_false_names(counts: Mapping[str, Any], sensitivity: float) -> None:
+    """Print the rate of false names at a sensitivity, as far as the classifier's card states it."""
+    if counts:
+        nearest = min(counts, key=lambda stated: abs(math.log(float(stated) / sensitivity)))
+        rate = counts[nearest]
+        note(
+            f"at a sensitivity of {nearest}, real background sounds of these surroundings got "
+            f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} "
+            f"at 95 %: {rate['names']} in {rate['hours']:g} h)"
+        )
 
 
 def _note_assumed(rows: list[dict[str, object]]) -> None:

@@ -108,13 +108,8 @@ def _own_scores(card: object) -> str:
         return "none"
     parts = [f"{counted(card['files'], 'file')}, each scored by trees grown without it"]
     for label, scores in card["labels"].items():
-        false_names = f"named {counted(scores['false_names'], 'time')} in something else"
-        if not scores["windows"]:
-            parts.append(f"{label} {false_names}")
-            continue
-        few = "" if scores["enough"] else ", too few files for a score"
-        windows, files = counted(scores["windows"], "window"), counted(scores["files"], "file")
-        parts.append(
-            f"{label}: {windows} of {files}, recall {scores['recall']:.0%}, {false_names}{few}"
-        )
+        of = counted(scores["files"], "file")
+        recall = f"recall {scores['recall']:.0%} in {of}, " if scores["windows"] else ""
+        named = counted(scores["false_names"], "time")
+        parts.append(f"{label}: {recall}named {named} in something else")
     return "; ".join(parts)

@@ -100,11 +100,8 @@ def label(
     if out is not None:
         sign_corrections(Path(out), [job.name for job in jobs])
     with open_journal(None if out is None else Path(out), work, fresh=fresh) as journal:
-        earlier = {job.index: journal.find(job) for job in jobs}
-        results = {index: result for index, result in earlier.items() if result is not None}
-        left = [job for job in jobs if job.index not in results]
-        with closing(perform_all(work, left, journal, workers=workers)) as performed:
-            results |= {job.index: result for job, result in performed}
+        with closing(perform_all(work, jobs, journal, workers=workers)) as performed:
+            results = {job.index: result for job, result in performed}
         rows = table_rows(work.columns, jobs, results)
         if out is None:
             return LabelTable(rows)

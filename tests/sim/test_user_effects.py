@@ -147,9 +147,9 @@ def test_a_file_that_cannot_be_used_is_refused_before_the_work(effects_file, cap
     ("body", "said"),
     [
         ('signals["torqe"]', "sensors: KeyError: 'torqe' (own.py, line 7)"),
-        ("None", "sensors must return a dict of the signals"),
+        ("None", "sensors: must return a dict of the signals"),
         ('{"torque": signals["torque"]}', "torque, acceleration, pressure, angle"),
-        ('signals | {"torque": signals["torque"][1:]}', "for 'torque'"),
+        ('signals | {"torque": signals["torque"][1:]}', "as torque"),
         ('signals | {"torque": signals["torque"] * float("nan")}', "must return finite numbers"),
     ],
 )
@@ -168,4 +168,4 @@ def test_a_drive_that_gives_no_speed_is_refused(effects_file, capsys, result):
     )
     text = text.replace('signals | {"torque": signals["torque"] + values["offset"]}', result)
     line = refusal(capsys, "--effects", effects_file(text), "--effect", "zero_offset")
-    assert "effect 'zero_offset': drive must return" in line
+    assert "effect 'zero_offset': drive: must return" in line
