@@ -16,29 +16,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from features.kernels.conditioning import (
-    ACOUSTIC_FROM,
-    NOTHING,
-    WORKING_LIMIT,
-    Transform,
-    band_analytic,
-    band_signal,
-    checked_signal,
-    forward,
-    usable_limit,
-)
+from features.kernels import conditioning, levels, spectra
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
-from features.kernels.levels import (
-    LEAST_SHARE_DB,
-    NOMINAL_THIRD_OCTAVES,
-    REFERENCES,
-    THESIS_BANDS,
-    THIRD_OCTAVE_RESOLUTION,
-    a_weighted_level,
-    band_power,
-    relative_db,
-    third_octave_levels,
-)
 from features.kernels.modulation import Modulation, modulation, short_time
 from features.kernels.slips import (
     Pulses,
@@ -48,17 +27,6 @@ from features.kernels.slips import (
     pulses_of,
     squared,
     torque_slips,
-)
-from features.kernels.spectra import (
-    Lines,
-    SpectralShape,
-    Spectrum,
-    find_lines,
-    line_resolution,
-    noise_floor,
-    spectral_shape,
-    welch,
-    whole_spectrum,
 )
 from models.show import short_repr
 
@@ -106,12 +74,12 @@ class Prepared:
     @property
     def low(self) -> float:
         """Lower limit of the described band [Hz]."""
-        return ACOUSTIC_FROM if self.kind in ACOUSTIC_KINDS else LOWEST
+        return conditioning.ACOUSTIC_FROM if self.kind in ACOUSTIC_KINDS else LOWEST
 
     @property
     def limit(self) -> float:
         """Upper limit of the described band [Hz]: 7 kHz, or less if the rate is low."""
-        return min(WORKING_LIMIT, usable_limit(self.rate))
+        return min(conditioning.WORKING_LIMIT, conditioning.usable_limit(self.rate))
 
     @cached_property
     def silent(self) -> bool:
@@ -119,19 +87,19 @@ class Prepared:
         return self.rms == 0.0 or self.low >= self.limit or self.in_band_share < _LEAST_IN_BAND
 
     @cached_property
-    def transform(self) -> Transform:
+    def transform(self) -> conditioning.Transform:
         """Fourier transform of the signal about its mean, divided by its rms value."""
-        return forward((self.samples - self.mean) / self.rms, self.rate)
+        return conditioning.forward((self.samples - self.mean) / self.rms, self.rate)
 
     @cached_property
     def below(self) -> tuple[NDArray[np.float64], float]:
         """Signal below the limit at the working rate, shape (n,), and that rate [Hz]."""
-        return band_signal(self.transform, 0.0, self.limit)
+        return conditioning.band_signal(self.transform, 0.0, self.limit)
 
     @cached_property
     def in_band(self) -> tuple[NDArray[np.float64], float]:
         """Signal in the described band at the working rate, shape (n,), and that rate [Hz]."""
-        return band_signal(self.transform, self.low, self.limit)
+        return conditioning.band_signal(self.transform, self.low, self.limit)
 
     @cached_property
     def in_band_power(self) -> float:
@@ -151,20 +119,20 @@ class Prepared:
         return self.in_band_power / whole if whole > 0.0 else 0.0
 
     @cached_property
-    def spectrum(self) -> Spectrum:
+    def spectrum(self) -> spectra.Spectrum:
         """Spectrum of the described band."""
         x, rate = self.in_band
-        return welch(x, rate, line_resolution(x.size / rate))
+        return spectra.welch(x, rate, spectra.line_resolution(x.size / rate))
 
     @cached_property
     def floor(self) -> NDArray[np.float64]:
         """Noise floor of the spectrum [1/Hz], shape (n_bins,)."""
-        return noise_floor(self.spectrum)
+        return spectra.noise_floor(self.spectrum)
 
     @cached_property
-    def lines(self) -> Lines:
+    def lines(self) -> spectra.Lines:
         """Discrete lines of the spectrum."""
-        return find_lines(self.spectrum, low=self.low, high=self.limit, floor=self.floor)
+        return spectra.find_lines(self.spectrum, low=self.low, high=self.limit, floor=self.floor)
 
     @cached_property
     def harmonics(self) -> Harmonics:
@@ -178,9 +146,9 @@ class Prepared:
         )
 
     @cached_property
-    def shape(self) -> SpectralShape:
+    def shape(self) -> spectra.SpectralShape:
         """Shape of the spectrum."""
-        return spectral_shape(self.spectrum, low=self.low, high=self.limit)
+        return spectra.spectral_shape(self.spectrum, low=self.low, high=self.limit)
 
     @cached_property
     def short_time(self) -> dict[str, float]:
@@ -191,12 +159,14 @@ class Prepared:
     @cached_property
     def analytic(self) -> tuple[NDArray[np.complex128], float]:
         """Analytic signal of the described band, and its rate [Hz]."""
-        return band_analytic(self.transform, self.low, self.limit)
+        return conditioning.band_analytic(self.transform, self.low, self.limit)
 
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
-        high, rate = band_analytic(self.transform, pulse_band_from(self.limit), self.limit)
+        high, rate = conditioning.band_analytic(
+            self.transform, pulse_band_from(self.limit), self.limit
+        )
         start = self.transform.lead / self.rate
         return pulses_of(self.analytic[0], high, rate, start=start)
 
@@ -215,15 +185,15 @@ class Prepared:
     def third_octave_levels(self) -> dict[str, float]:
         """One-third octave levels [dB] by mid-band frequency; at least -80 dB re the whole."""
         if self.rms == 0.0:
-            return dict.fromkeys(NOMINAL_THIRD_OCTAVES, math.nan)
-        spectrum = welch(self.samples, self.rate, THIRD_OCTAVE_RESOLUTION)
-        levels = third_octave_levels(spectrum, reference=1.0)
-        least = 20.0 * math.log10(self.rms) + LEAST_SHARE_DB
-        unit = 20.0 * math.log10(REFERENCES[self.kind])
+            return dict.fromkeys(levels.NOMINAL_THIRD_OCTAVES, math.nan)
+        spectrum = spectra.welch(self.samples, self.rate, levels.THIRD_OCTAVE_RESOLUTION)
+        by_band = levels.third_octave_levels(spectrum, reference=1.0)
+        least = 20.0 * math.log10(self.rms) + levels.LEAST_SHARE_DB
+        unit = 20.0 * math.log10(levels.REFERENCES[self.kind])
         # A band that is not measured stays NaN.
         return {
             name: level if math.isnan(level) else max(level, least) - unit
-            for name, level in levels.items()
+            for name, level in by_band.items()
         }
 
     @cached_property
@@ -233,28 +203,28 @@ class Prepared:
         The thesis's bands, which contain hum or extend beyond the described band, are taken from
         the whole spectrum. NaN if the rate does not reach a band.
         """
-        levels = {
+        by_band = {
             f"{low}_{high}": self._share_db(self.spectrum, low, high)
             if high <= 1.001 * self.limit
             else math.nan
             for low, high in pairwise(_BAND_EDGES)
         }
-        whole = whole_spectrum(self.transform)
-        for low, high in (THESIS_BANDS[0], THESIS_BANDS[2]):
-            reached = high <= usable_limit(self.rate)
-            levels[f"{low:.0f}_{high:.0f}"] = (
+        whole = spectra.whole_spectrum(self.transform)
+        for low, high in (levels.THESIS_BANDS[0], levels.THESIS_BANDS[2]):
+            reached = high <= conditioning.usable_limit(self.rate)
+            by_band[f"{low:.0f}_{high:.0f}"] = (
                 self._share_db(whole, low, high) if reached else math.nan
             )
-        return levels
+        return by_band
 
-    def _share_db(self, spectrum: Spectrum, low: float, high: float) -> float:
-        part, whole = band_power(spectrum, [low, self.low], [high, self.limit])
-        return relative_db(float(part), float(whole))
+    def _share_db(self, spectrum: spectra.Spectrum, low: float, high: float) -> float:
+        part, whole = levels.band_power(spectrum, [low, self.low], [high, self.limit])
+        return levels.relative_db(float(part), float(whole))
 
     @property
     def level(self) -> float:
         """Level about the mean [dB]; NaN for a constant signal."""
-        reference = REFERENCES[self.kind]
+        reference = levels.REFERENCES[self.kind]
         return 20.0 * math.log10(self.rms / reference) if self.rms > 0.0 else math.nan
 
     @property
@@ -262,7 +232,9 @@ class Prepared:
         """A-weighted level [dB]; NaN for a constant signal."""
         if self.rms == 0.0:
             return math.nan
-        return a_weighted_level(self.samples, self.rate, reference=REFERENCES[self.kind])
+        return levels.a_weighted_level(
+            self.samples, self.rate, reference=levels.REFERENCES[self.kind]
+        )
 
     @property
     def hum_share(self) -> float:
@@ -288,9 +260,9 @@ class Prepared:
     @property
     def high_band(self) -> float:
         """Level above 2 kHz, where a torque has little (thesis, 5.2.3) [dB]."""
-        if usable_limit(self.rate) <= THESIS_BANDS[1][0]:
+        if conditioning.usable_limit(self.rate) <= levels.THESIS_BANDS[1][0]:
             return math.nan
-        return self._share_db(self.spectrum, THESIS_BANDS[1][0], self.limit)
+        return self._share_db(self.spectrum, levels.THESIS_BANDS[1][0], self.limit)
 
     @cached_property
     def top_bands(self) -> tuple[tuple[float, float], ...]:
@@ -298,12 +270,12 @@ class Prepared:
         return tuple(self._top_band(low, high) for low, high in TOP_BANDS)
 
     def _top_band(self, low: float, high: float) -> tuple[float, float]:
-        if high > usable_limit(self.rate):
+        if high > conditioning.usable_limit(self.rate):
             return math.nan, math.nan
-        top, _ = band_analytic(self.transform, low, high)
+        top, _ = conditioning.band_analytic(self.transform, low, high)
         power = squared(top)
-        level = relative_db(0.5 * float(power.mean()), self.in_band_power)
-        return level, envelope_kurtosis(power) if level > LEAST_SHARE_DB else math.nan
+        level = levels.relative_db(0.5 * float(power.mean()), self.in_band_power)
+        return level, envelope_kurtosis(power) if level > levels.LEAST_SHARE_DB else math.nan
 
 
 def prepare(
@@ -343,10 +315,10 @@ def prepare(
     >>> prepare([1.0] * 480, 48e3, "pressure").silent
     True
     """
-    x = checked_signal(signal, rate, first)
+    x = conditioning.checked_signal(signal, rate, first)
     largest = float(np.abs(x).max())
     mean = float(x.mean())
     scale = largest if largest > 0.0 else 1.0
     rms = scale * math.sqrt(float(np.mean(((x - mean) / scale) ** 2)))
-    rms = rms if rms > NOTHING * largest else 0.0
+    rms = rms if rms > conditioning.NOTHING * largest else 0.0
     return Prepared(x, rate, kind, calibrated, mean, rms)

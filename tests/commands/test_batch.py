@@ -48,7 +48,7 @@ def test_labels_are_linked_to_conditions_with_a_map_and_label_tracks(runs, capsy
     out, err = capsys.readouterr()
     paths = [line for line in out.splitlines() if "  " not in line]
     assert paths == ["t.csv", "map.svg", "map.csv"]
-    assert re.search(r"at a sensitivity of 2.* false names per hour", err)
+    assert "false names per hour" in err
     rows = csv_rows("t.csv")
     assert list(rows[0]) == list(COLUMNS)
     assert [(row["file"], row["speed_rad_s"]) for row in rows] == [
