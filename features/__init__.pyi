@@ -7,14 +7,14 @@ from .kernels.levels import (
     NOMINAL_THIRD_OCTAVES as NOMINAL_THIRD_OCTAVES,
     REFERENCES as REFERENCES,
     THESIS_BANDS as THESIS_BANDS,
-    SoundLevels as SoundLevels,
-    a_weighted as a_weighted,
-    a_weighting as a_weighting,
     band_levels as band_levels,
     band_power as band_power,
-    sound_levels as sound_levels,
     third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,
+)
+from .kernels.lines import (
+    Lines as Lines,
+    find_lines as find_lines,
 )
 from .kernels.slips import (
     Pulses as Pulses,
@@ -22,12 +22,16 @@ from .kernels.slips import (
     torque_slips as torque_slips,
 )
 from .kernels.spectra import (
-    Lines as Lines,
     SpectralShape as SpectralShape,
     Spectrum as Spectrum,
     autospectrum as autospectrum,
-    find_lines as find_lines,
     spectral_shape as spectral_shape,
+)
+from .kernels.weighting import (
+    SoundLevels as SoundLevels,
+    a_weighted as a_weighted,
+    a_weighting as a_weighting,
+    sound_levels as sound_levels,
 )
 from .modal.hammer import (
     Hit as Hit,

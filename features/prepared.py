@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from features.kernels import conditioning, levels, spectra
 from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
+from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation, short_time
 from features.kernels.slips import (
     Pulses,
@@ -28,6 +29,7 @@ from features.kernels.slips import (
     squared,
     torque_slips,
 )
+from features.kernels.weighting import a_weighted_level
 from models.show import short_repr
 
 ACOUSTIC_KINDS = ("pressure", "acceleration")
@@ -122,17 +124,17 @@ class Prepared:
     def spectrum(self) -> spectra.Spectrum:
         """Spectrum of the described band."""
         x, rate = self.in_band
-        return spectra.welch(x, rate, spectra.line_resolution(x.size / rate))
+        return spectra.welch(x, rate, line_resolution(x.size / rate))
 
     @cached_property
     def floor(self) -> NDArray[np.float64]:
         """Noise floor of the spectrum [1/Hz], shape (n_bins,)."""
-        return spectra.noise_floor(self.spectrum)
+        return noise_floor(self.spectrum)
 
     @cached_property
-    def lines(self) -> spectra.Lines:
+    def lines(self) -> Lines:
         """Discrete lines of the spectrum."""
-        return spectra.find_lines(self.spectrum, low=self.low, high=self.limit, floor=self.floor)
+        return find_lines(self.spectrum, low=self.low, high=self.limit, floor=self.floor)
 
     @cached_property
     def harmonics(self) -> Harmonics:
@@ -232,9 +234,7 @@ class Prepared:
         """A-weighted level [dB]; NaN for a constant signal."""
         if self.rms == 0.0:
             return math.nan
-        return levels.a_weighted_level(
-            self.samples, self.rate, reference=levels.REFERENCES[self.kind]
-        )
+        return a_weighted_level(self.samples, self.rate, reference=levels.REFERENCES[self.kind])
 
     @property
     def hum_share(self) -> float:

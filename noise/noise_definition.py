@@ -2,7 +2,7 @@
 
 The thesis defines the noises by their mechanism (5.2.3, 6.2). The label follows from the motion and
 the sound without background noise, room and microphone, which the classifier does not have. Lines
-are those of `features.kernels.spectra`.
+are those of `features.kernels.lines`.
 
 - *none*: the torque settles to steady sliding, apart from inaudibly slow changes, or the sound is
   quieter than a quiet room.
@@ -27,8 +27,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import a_weighting, band_levels
-from features.kernels.spectra import Lines, autospectrum, find_lines
+from features.kernels.levels import band_levels
+from features.kernels.lines import Lines, find_lines
+from features.kernels.spectra import autospectrum
+from features.kernels.weighting import a_weighting
 from models.recording import REFERENCE_PRESSURE
 from sim.analysis.regime import LEAST_OSCILLATION
 from sim.motion import Motion

@@ -28,19 +28,17 @@ from features.kernels.conditioning import (
     forward,
     usable_limit,
 )
-from features.kernels.spectra import (
+from features.kernels.lines import (
     MAIN_LOBE,
     PROMINENCE_DB,
     RANGE_DB,
     Lines,
-    Spectrum,
     find_lines,
     line_powers,
     line_resolution,
     noise_floor,
-    parabola_tops,
-    welch,
 )
+from features.kernels.spectra import Spectrum, parabola_tops, welch
 from models.errors import ParameterError
 from models.show import short_repr
 

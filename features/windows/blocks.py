@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from features.kernels.conditioning import USABLE_SHARE, WORKING_LIMIT
-from features.kernels.levels import a_weighting
+from features.kernels.weighting import a_weighting
 from features.windows.arithmetic import power_of
 from models.compilation import COMPILED
 

@@ -3,7 +3,7 @@
 
 A bin has 3.9 Hz, which separates the harmonics of a squawk of 100 Hz, and three overlapping spectra
 of a quarter of a second are added. A line is 10 dB above its surroundings and above the saddles
-beside it, as in `features.kernels.spectra`. Sums over many bins are in the order of the compiler,
+beside it, as in `features.kernels.lines`. Sums over many bins are in the order of the compiler,
 which is several times as fast.
 """
 

@@ -21,7 +21,7 @@ import numpy as np
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from features.kernels.levels import sound_levels
+from features.kernels.weighting import sound_levels
 from models.condition import Condition
 from models.errors import ParameterError
 from models.recording import Channel, Recording

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from features.kernels.levels import REFERENCES, sound_levels
+from features.kernels.levels import REFERENCES
+from features.kernels.weighting import sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, RecordingBlocks
 from noise.app.requests import number

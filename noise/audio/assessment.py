@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import NOMINAL_THIRD_OCTAVES, SoundLevels, a_weighting, sound_levels
+from features.kernels.levels import NOMINAL_THIRD_OCTAVES
+from features.kernels.weighting import SoundLevels, a_weighting, sound_levels
 from models.recording import REFERENCE_PRESSURE, Recording
 from noise.audio.sound import pressure_channel
 

@@ -1,6 +1,6 @@
 """Sound levels of segments, and their levels over the background.
 
-A-weighted levels are those that `features.kernels.levels` measures of the same samples.
+A-weighted levels are those that `features.kernels.weighting` measures of the same samples.
 
 The background is all that is not labelled as a noise. Its level is the one exceeded for 90 % of the
 time, L_A90 (ISO 1996-1), which a slamming door does not raise. Digital silence, as of a gate or an
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import weighted_levels
+from features.kernels.weighting import weighted_levels
 from models.recording import REFERENCE_PRESSURE, RecordingBlocks
 from noise.base.labels import NAMED
 

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from features.kernels.levels import a_weighted_level, band_levels, band_power
+from features.kernels.levels import band_levels, band_power
 from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
+from features.kernels.weighting import a_weighted_level
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible

@@ -18,7 +18,7 @@ import numpy as np
 from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
-from features.kernels.levels import a_weighted_level
+from features.kernels.weighting import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible

@@ -27,7 +27,7 @@ import numpy as np
 from joblib import Parallel, delayed, hash as digest
 from numpy.typing import NDArray
 
-from features.kernels.levels import WeightedLevels, weighted_levels
+from features.kernels.weighting import WeightedLevels, weighted_levels
 from models.condition import Condition as Stated
 from models.radiation.impulse_responses import ImpulseResponses
 from models.radiation.rig_response import impulse_responses

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.harmonics import analyse_harmonics
-from features.kernels.spectra import Lines, autospectrum, find_lines
+from features.kernels.lines import Lines, find_lines
+from features.kernels.spectra import autospectrum
 from models.bushing import Sleeve
 from models.condition import FIXED
 from models.rig import Rig

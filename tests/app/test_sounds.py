@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from features.kernels.levels import sound_levels
+from features.kernels.weighting import sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, Recording
 from noise.app.opened import open_paths

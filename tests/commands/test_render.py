@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from features.kernels.levels import sound_levels
+from features.kernels.weighting import sound_levels
 from models.recording import Channel, Recording
 from noise.audio.gain import loudness, true_peak
 from noise.base.labels import LABELS

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from features.kernels.levels import a_weighted, band_power, sound_levels
+from features.kernels.levels import band_power
 from features.kernels.spectra import autospectrum
+from features.kernels.weighting import a_weighted, sound_levels
 from features.table import feature_vector
 from models.errors import ParameterError
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from features.kernels.levels import a_weighted_level
+from features.kernels.weighting import a_weighted_level
 from models.condition import FIXED, Condition
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig

@@ -7,7 +7,8 @@ import pytest
 
 from features.kernels.harmonics import analyse_harmonics
 from features.kernels.levels import third_octave_levels
-from features.kernels.spectra import autospectrum, find_lines, noise_floor
+from features.kernels.lines import find_lines, noise_floor
+from features.kernels.spectra import autospectrum
 from models.rig_file import load_material_rig
 from noise.classifier import load_classifier
 from noise.demo import CASES

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.signal import butter, find_peaks, hilbert, sosfiltfilt
 
-from features.kernels.spectra import autospectrum, find_lines
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
 from models.rig import LawSpec
 from models.rig_file import load_material_rig, material_names
 from noise.noise_definition import label_by_physics

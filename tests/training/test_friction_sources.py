@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from features.kernels.spectra import autospectrum, find_lines
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
 from noise.training.classifier.friction_mechanisms import (
     ENVELOPE_RATE,
     ModalBody,

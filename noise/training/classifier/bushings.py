@@ -16,7 +16,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from features.kernels.spectra import autospectrum, find_lines
+from features.kernels.lines import find_lines
+from features.kernels.spectra import autospectrum
 from models.bench import Microphone, Plate
 from models.errors import ParameterError
 from models.rig import Fit, LawSpec, Rig

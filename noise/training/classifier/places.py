@@ -22,7 +22,7 @@ from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from scipy.signal import fftconvolve
 
-from features.kernels.levels import a_weighting
+from features.kernels.weighting import a_weighting
 from noise.base import packaged_toml
 from noise.base.arrays import Array, Rng
 from noise.training.classifier.background_sounds import background_sound

@@ -133,7 +133,7 @@ def streamed(app, number, n, design=PLAIN):
 
 
 def test_a_stream_is_the_recording_that_simulate_makes_and_comes_as_it_is_played():
-    from features.kernels.levels import sound_levels
+    from features.kernels.weighting import sound_levels
 
     with opened_app() as app:
         assert len(list(streamed(app, 9, 2))) == 2  # whatever is done once is done now
