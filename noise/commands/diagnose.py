@@ -80,16 +80,13 @@ def _read(options: Namespace, progress: Steps) -> tuple[Case, Mapping[str, Effec
 
 def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -> None:
     """Print the answer, and its notes that have not been printed."""
-    from noise.diagnosis.sentences import answer, fit_sentence, strength_sentence
+    from noise.diagnosis.sentences import answer, finding_of, fit_sentence
 
     for sentence in answer(diagnosis):
         say(sentence)
-    for finding in diagnosis.effects:
-        if finding.name in diagnosis.verdict:
-            if finding.name == diagnosis.verdict[0] and finding.closed is not None:
-                say(fit_sentence(finding))
-            if sentence := strength_sentence(finding):
-                say(sentence)
+    finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
+    if finding is not None and finding.closed is not None:
+        say(fit_sentence(finding))
     if diagnosis.next_measurement and not diagnosis.bench:
         say(f"Measure next: {diagnosis.next_measurement}.")
     printed |= {*diagnosis.bench, *diagnosis.faults}  # sentences of the answer

@@ -38,9 +38,9 @@ from noise.diagnosis.causes.verdict import (
     next_measurement,
 )
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
-from noise.diagnosis.gap import KINDS
 from noise.diagnosis.outcome import Agreement, Diagnosis, EffectFinding, StageFinding
 from noise.diagnosis.sentences import AGREES
+from noise.diagnosis.signature import KINDS
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Stage
 
@@ -52,9 +52,6 @@ _SHOWN = 5
 
 _AS_REPEATS = 0.5
 """p-value from which on a stage differs as repeats do [-]; assumed."""
-
-_ROOM = (18.0, 28.0)
-"""Between which the shipped bushings, given at 23, are as they are [degree Celsius]; assumed."""
 
 
 def diagnose(
@@ -100,13 +97,13 @@ def diagnose(
     Traceback (most recent call last):
     models.errors.ParameterError: ...
     """
-    library = effect_library(_paths(effects))
-    case = read_case(_paths(data), rig if isinstance(rig, Rig) else load_rig(rig))
+    paths, own = (
+        [Path(given)] if isinstance(given, str | Path) else [Path(path) for path in given]
+        for given in (data, effects)
+    )
+    library = effect_library(own)
+    case = read_case(paths, rig if isinstance(rig, Rig) else load_rig(rig))
     return diagnose_case(case, quick=quick, library=library, seed=seed)
-
-
-def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
-    return [Path(given)] if isinstance(given, str | Path) else [Path(path) for path in given]
 
 
 def diagnose_case(
@@ -168,21 +165,21 @@ def _stated(
 ) -> Diagnosis:
     """Return a diagnosis with location, alternatives and next measurement."""
     verdict, probabilities = judged.verdict, judged.probabilities
-    kinds = _kinds(case)
-    findings = stage_findings(first.table, nulls, first.flat)
+    findings = stage_findings(first.table, nulls)
     ranked = sorted(probabilities, key=lambda name: -probabilities[name])
     ranked = [name for name in ranked if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
-    place = locate(first.table, nulls, stage, first.flat)
-    agreement = _agreement(case, first)
+    place = locate(first.table, nulls, stage)
+    agreement = []
+    for name, recording, gap, each in zip(
+        case.names, case.recordings, first.gap.of_recordings, first.gap.of_channels, strict=True
+    ):
+        at = known_condition(recording.condition)
+        channels = {k: float(d) for k, d in zip(KINDS, each, strict=True) if math.isfinite(d)}
+        agreement.append(Agreement(name, at.speed, at.interference, float(gap), channels))
     farthest = max(agreement, key=lambda one: one.gap)
-    flat = tuple(
-        f"channel {kind} looks clipped: its peaks are flat, and those of the simulation are not"
-        for kind in first.flat
-        if not any(text.startswith(f"channel {kind} clips") for text in case.faults)
-    )
     suspected = (
         f"what is left looks like {name}, which the rig file lists already: its form or numbers "
         "are off"
@@ -190,11 +187,7 @@ def _stated(
     )
     return Diagnosis(
         verdict=verdict,
-        equivalent=tuple(
-            pair
-            for pair in equivalent_pairs(ranked, probabilities, kinds)
-            if not (first.flat and "clipping" in pair)  # flat peaks tell it from all else
-        ),
+        equivalent=equivalent_pairs(ranked, probabilities, case.kinds),
         location=place if verdict else None,
         stages=findings,
         effects=tuple(
@@ -205,7 +198,7 @@ def _stated(
         next_measurement=next_measurement(
             verdict,
             probabilities,
-            kinds,
+            case.kinds,
             place.stage,
             differs=first.gap.p_value <= UNUSUAL,
             farthest=farthest.recording if farthest.gap > AGREES else "",
@@ -214,24 +207,16 @@ def _stated(
         gap=first.gap.distance,
         p_value=first.gap.p_value,
         notes=(
-            *case.faults, *flat, *suspected, *_notes(case), *first.unlearned,
+            *case.faults,
+            *suspected,
+            *_notes(case),
+            *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(first.table, nulls, first.flat),
-        agreement=agreement,
-        faults=(*case.faults, *flat),
-    )  # fmt: skip
-
-
-def _agreement(case: Case, first: FirstAnswer) -> tuple[Agreement, ...]:
-    agreements = []
-    for name, recording, whole, each in zip(
-        case.names, case.recordings, first.gap.of_recordings, first.gap.of_channels, strict=True
-    ):
-        at = known_condition(recording.condition)
-        channels = {k: float(d) for k, d in zip(KINDS, each, strict=True) if math.isfinite(d)}
-        agreements.append(Agreement(name, at.speed, at.interference, float(whole), channels))
-    return tuple(agreements)
+        differences=differences(first.table, nulls),
+        agreement=tuple(agreement),
+        faults=case.faults,
+    )
 
 
 def _another_bench(
@@ -247,12 +232,6 @@ def _another_bench(
         notes=(*reasons, *case.faults, *_notes(case), *case_remarks(case, library)),
         bench=reasons,
         faults=case.faults,
-    )
-
-
-def _kinds(case: Case) -> frozenset[str]:
-    return frozenset(
-        channel.kind for recording in case.recordings for channel in recording.channels
     )
 
 
@@ -291,10 +270,8 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     """
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
-    shipped = assumed_fit(case.rig)
-    elsewhere = shipped and any(not _ROOM[0] <= t <= _ROOM[1] for t in heat)
     remarks = [
-        shipped,
+        assumed_fit(case.rig),
         *use_remarks(
             case.rig,
             speed=[c.speed for c in at],
@@ -303,15 +280,13 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
             temperature=heat,
         ),
         *effect_remarks(case.rig, library),
-        temperature_remark(case.rig, *heat)
-        if case.rig.temperature or len(heat) > 1 or elsewhere
-        else "",
+        temperature_remark(case.rig, *heat) if case.rig.temperature or len(heat) > 1 else "",
     ]
     return [text for text in dict.fromkeys(remarks) if text]
 
 
 def _notes(case: Case) -> list[str]:
-    notes = channel_costs(_kinds(case))
+    notes = channel_costs(case.kinds)
     different = {recording.condition for recording in case.recordings}
     if len(case.recordings) == 1:
         notes.append(

@@ -5,13 +5,6 @@ good ones of `sim.acquisition`, and through converters as coarse as the thesis's
 that are simulated through a rig's own sensors a gap stays what it is, whatever the sensors; the
 probabilities of causes do not. Nor do they where a rig's responses come from a poor hammer test:
 its errors look like those of a sensor's gain or of the plate.
-
-Channels whose peaks are flat are overloaded. A range that is reached in all recordings is told by
-`noise.diagnosis.bench.check`; an amplifier that overloads before the anti-alias filter leaves no
-single largest value, but samples that pile up at the ends of the signal. Whatever swings smoothly
-passes its peak as a parabola does: within a small distance w of the end it is 1 / (sqrt(2) - 1) =
-2.4 times as long as between w and 2 w, and less where peaks have unequal heights. More is an
-overload, unless the simulation has it as well.
 """
 
 from __future__ import annotations
@@ -20,12 +13,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
-from noise.base.arrays import Array
 from noise.diagnosis.case import Case
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
 from noise.diagnosis.causes.verdict import (
@@ -41,115 +31,10 @@ from noise.diagnosis.causes.verdict import (
 from noise.diagnosis.evidence.channel_summary import USABLE
 from noise.diagnosis.evidence.summary import CaseTable, case_table, lacking_coherence
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.gap import KINDS, Gap
-from noise.diagnosis.simulated.model_runs import Model
+from noise.diagnosis.gap import Gap
 from sim.acquisition import THESIS_CONVERTER, Acquisition
 from sim.effects import constant_version
 from sim.effects.effect import Effect
-
-_WIDTHS = (0.02, 0.05, 0.1, 0.15)
-"""Distances from an end, over the span [-]: the lower an amplifier cuts, the wider its filter's
-ringing spreads what it left; assumed."""
-
-_ENDS = (0.001, 0.999)
-"""Quantiles that a signal's ends are [-]; single impacts lie beyond; assumed."""
-
-_LEAST = 0.02
-"""Share of the samples that a pile has at least [-]; fewer may be the foot of an impact;
-assumed."""
-
-_BOTH, _ONE = 3.0, 4.5
-"""Ratios from which a channel is piled up at both ends, and at one [-]: beyond the 2.4 of a
-parabola, and measured on 139 development cases without clipping, where the largest were 2.3 and
-2.8."""
-
-_FEWEST = 3
-"""Recordings: in a single short one, of a few peaks, chance makes ratios up to 5 (measured on the
-same)."""
-
-_OF_SIMULATION = 0.5
-"""Share of a ratio that the simulation's must stay below [-]; assumed."""
-
-_FEWEST_VALUES = 40
-"""That a signal takes; with fewer the steps of a converter are what piles up; assumed."""
-
-
-def flat_channels(
-    recordings: Sequence[Recording], simulated: Callable[[Recording], Recording]
-) -> tuple[str, ...]:
-    """Return the kinds of channel whose peaks are flat in most recordings but not in simulation.
-
-    Parameters
-    ----------
-    recordings : sequence of Recording
-        Of one rig; fewer than three tell nothing.
-    simulated : callable
-        Returns what the rig file makes of the condition of a recording; asked where peaks are flat.
-
-    Returns
-    -------
-    tuple of str
-
-    Examples
-    --------
-    >>> from models.recording import Channel, Recording
-    >>> tone = np.sin(np.arange(9000.0))[None]
-    >>> plain, cut = (Recording(x, 30e3, (Channel("pressure"),))
-    ...               for x in (tone, np.clip(tone, -0.6, 0.6)))
-    >>> flat_channels([cut] * 3, lambda _: plain), flat_channels([plain] * 3, lambda _: plain)
-    (('pressure',), ())
-    """
-    flat_kinds = []
-    repeats: list[Recording] = []
-    for kind in KINDS:
-        having = [r for r in recordings if r.first(kind) is not None]
-        if len(having) < _FEWEST or (flat := _flatness(having, kind)) < 1.0:
-            continue
-        repeats = repeats or [simulated(r) for r in recordings]
-        made = [r for r in repeats if r.first(kind) is not None]
-        if len(made) < _FEWEST or _flatness(made, kind) < _OF_SIMULATION * flat:
-            flat_kinds.append(kind)
-    return tuple(flat_kinds)
-
-
-def _flatness(recordings: Sequence[Recording], kind: str) -> float:
-    """Return the ratio of pile-ups of a channel to that of an overload [-]."""
-    each = [pile_ups(r.samples[row]) for r in recordings if (row := r.first(kind)) is not None]
-    middle = np.median(each, axis=0)
-    return float(max(middle.min(axis=0).max() / _BOTH, middle.max() / _ONE))
-
-
-def pile_ups(signal: Array) -> Array:
-    """Return the ratio of samples at either end of a signal to those just below it.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-        [any unit]
-
-    Returns
-    -------
-    ndarray, shape (2, n_widths)
-        At the upper end and at the lower, within several widths [-]; 0 where few samples are.
-
-    Examples
-    --------
-    >>> pile_ups(np.sin(np.arange(9000.0))).max().round(1)
-    np.float64(2.4)
-    """
-    low, high = np.quantile(signal, _ENDS)
-    span = float(high - low)
-    ratios = np.zeros((2, len(_WIDTHS)))
-    if not span or np.unique(signal).size < _FEWEST_VALUES:
-        return ratios
-    for i, from_end in enumerate(((high - signal) / span, (signal - low) / span)):
-        within = np.sort(from_end[from_end < 2.0 * _WIDTHS[-1]])
-        for j, width in enumerate(_WIDTHS):
-            at, below = np.searchsorted(within, (width, 2.0 * width)).tolist()
-            if at >= _LEAST * signal.size:
-                ratios[i, j] = at / (below - at + 1.0)
-    return ratios
-
 
 NOISIEST = 6.0
 """Noise of the sensors that were learned with, over that of good ones at most [-]."""
@@ -242,8 +127,6 @@ class FirstAnswer:
         Effects that the rig file lists and that what is left looks like all the same.
     unlearned : tuple of str
         Notes on sensors unlike those that the probabilities were learned with.
-    flat : tuple of str
-        Kinds of channel that are overloaded, as `noise.diagnosis.first_answer` tells.
     """
 
     comparison: CaseComparison
@@ -253,7 +136,6 @@ class FirstAnswer:
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
     unlearned: tuple[str, ...]
-    flat: tuple[str, ...] = ()
 
     @property
     def table(self) -> CaseTable:
@@ -312,8 +194,7 @@ def first_answer(
     gap = comparison.gap(seed)
     known = known_effects(case.rig, library)
     probabilities = dict(posterior.probabilities(table))
-    kinds = {channel.kind for one in case.recordings for channel in one.channels}
-    probabilities |= dict.fromkeys(unseen_causes(kinds), 0.0)
+    probabilities |= dict.fromkeys(unseen_causes(case.kinds), 0.0)
     again = {name: p for name, p in probabilities.items() if name in known}
     probabilities |= dict.fromkeys(again, 0.0)
     probabilities["parameters"] = max([probabilities["parameters"], *again.values()])
@@ -338,7 +219,6 @@ def first_answer(
     needs = needs_explaining(probabilities["none"], posterior.alarm, gap, chance)
     if chance is not None and chance > UNUSUAL and not needs:
         hypotheses = with_none(hypotheses, _WITHIN_REPEATS)
-    flat = flat_channels(case.recordings, lambda one: comparison.simulated(Model(), one, seed))
     single = marginals(hypotheses)
     return FirstAnswer(
         comparison,
@@ -348,5 +228,4 @@ def first_answer(
         likeliest({h: p for h, p in hypotheses.items() if h}) if needs else (),
         tuple(n for n, p in again.items() if p >= _SUSPECTED) if needs else (),
         tuple(filter(None, (rough, poor))),
-        flat,
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from models.change import multiplied
 from models.errors import ParameterError
 from models.rig_file import changed_rig_text, read_toml
-from noise.diagnosis.sentences import cause_of, joined, number, parameter_name
+from noise.diagnosis.words import cause_of, joined, number, parameter_name
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:

@@ -138,26 +138,6 @@ class Agreement:
 
 
 @short_repr
-@dataclass(frozen=True)
-class Remainder:
-    """Gap that the fitted model of the verdict leaves.
-
-    Parameters
-    ----------
-    gap : float
-        Gap of held-out recordings, relative to that of repeats [-].
-    channels : tuple of str
-        Channels with the largest gap, in falling order.
-    band : (float, float)
-        [Hz]
-    """
-
-    gap: float
-    channels: tuple[str, ...]
-    band: tuple[float, float]
-
-
-@short_repr
 @dataclass(frozen=True, eq=False)
 class Illustration:
     """Held-out recording with its simulations, for pictures and players."""
@@ -241,8 +221,6 @@ class Diagnosis:
         None if nothing closes the gap, and without fits.
     agreement : tuple of Agreement
         Gap of each recording before any fit.
-    remainder : Remainder, optional
-        None if the fit leaves no more than the scatter of repeats, and without a fit.
     bench : tuple of str
         Reasons why the recordings cannot be of this rig, one line each; the verdict is then
         ``("unknown",)``.
@@ -275,7 +253,6 @@ class Diagnosis:
     differences: tuple[Location, ...] = ()
     improvement: Improvement | None = None
     agreement: tuple[Agreement, ...] = ()
-    remainder: Remainder | None = None
     bench: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
 
@@ -297,7 +274,8 @@ class Diagnosis:
         matplotlib.axes.Axes
         """
         from models.drawing import BLUE, GREY, axes_or_new
-        from noise.diagnosis.sentences import cause_of, headline, percent
+        from noise.diagnosis.sentences import headline
+        from noise.diagnosis.words import cause_of, percent
 
         causes = sorted(self.probabilities.items(), key=lambda item: -item[1])[:_DRAWN]
         named = self.verdict or ("none",)
@@ -320,7 +298,6 @@ class Diagnosis:
 _KEYS: dict[type, dict[str, str]] = {
     Diagnosis: {"differences": "map", "floor": "gap_floor"},
     Location: {"band": "band_hz"},
-    Remainder: {"band": "band_hz"},
     Agreement: {"speed": "speed_rad_s", "interference": "interference_mm"},
 }
 """Keys of fields that have another name in the file."""

@@ -51,7 +51,7 @@ from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE, segment_frequency
 from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
-from noise.diagnosis.sentences import joined
+from noise.diagnosis.words import joined
 from sim.acquisition import Acquisition, decimate
 
 _LENGTH = 128

@@ -1,55 +1,31 @@
-"""Headline and sentences of a diagnosis, and words for causes, probabilities and numbers.
+"""Headline and sentences of a diagnosis.
 
 A cause is named only if it is likely and the stage that it acts in differs. Otherwise the sentence
 states what differs, and what it may be. Figures are those of the tables beside the sentences; those
-that were not determined are left out. Probabilities are worded by the scale of the
-Intergovernmental Panel on Climate Change (Mastrandrea et al. 2010, Guidance note on consistent
-treatment of uncertainties); the number always follows the word.
+that were not determined are left out.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from statistics import NormalDist
 
-from noise.base import SURE_90, packaged_toml
-from noise.diagnosis.outcome import LARGEST_GAP, SURE, Agreement, Diagnosis, EffectFinding, Location
+from noise.base import SURE_90
+from noise.diagnosis.outcome import SURE, Diagnosis, EffectFinding
+from noise.diagnosis.words import (
+    NOT_DETERMINED,
+    PHASES,
+    cause_of,
+    frequency,
+    gap_number,
+    joined,
+    number,
+    p_number,
+    parameter_name,
+    percent,
+)
 from sim.effects import EFFECTS
-
-PHASES = {
-    "stick": "while the contact sticks",
-    "slip": "while the contact slips",
-    "cycle": "in the stick-slip cycle as a whole",
-}
-"""Phases of the stick-slip cycle in words."""
-
-
-def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
-    """Return the stage that an effect acts in; empty if it is unknown."""
-    finding = finding_of(diagnosis, name)
-    if finding is not None:
-        return str(finding.stage)
-    return str(EFFECTS[name].stage) if name in EFFECTS else ""
-
-
-def begins(diagnosis: Diagnosis) -> bool:
-    """Return whether the gap begins in the stage of its location.
-
-    It does if that stage differs significantly and effects of the verdict, if any, act there.
-
-    Examples
-    --------
-    >>> from noise.diagnosis.outcome import Diagnosis
-    >>> begins(Diagnosis((), (), None, {}, (), {"none": 1.0}, {}, "", (), 0.9, 1.0, 0.6, 1.0))
-    False
-    """
-    place = diagnosis.location
-    if place is None or place.p_value > SURE:
-        return False
-    acting = {stage_of_effect(diagnosis, name) for name in diagnosis.verdict} - {""}
-    return not acting or place.stage in acting
 
 
 def finding_of(diagnosis: Diagnosis, name: str) -> EffectFinding | None:
@@ -57,181 +33,10 @@ def finding_of(diagnosis: Diagnosis, name: str) -> EffectFinding | None:
     return next((effect for effect in diagnosis.effects if effect.name == name), None)
 
 
-def parameter_name(name: str) -> str:
-    """Return a parameter's name in words.
-
-    Examples
-    --------
-    >>> parameter_name("elastomer_stiffness")
-    'elastomer stiffness'
-    """
-    return name.replace("_", " ")
-
-
-NOT_DETERMINED = "not determined"
-"""Text for an unknown figure."""
-
-
-@dataclass(frozen=True)
-class Cause:
-    """Name and description of a cause."""
-
-    name: str
-    clause: str
-
-
-CAUSES = {
-    name: Cause(*words)
-    for name, words in packaged_toml("noise.diagnosis", "cause_names.toml").items()
-}
-"""Descriptions of all shipped effects and of the other verdicts, by name."""
-
-STAGES = {
-    "drive": "the shaft's motion",
-    "friction": "contact, elastomer",
-    "structure": "clamp and beams",
-    "radiation": "plate and room",
-    "measurement": "sensors and cables",
-}
-"""Descriptions of the stages, in the order of the chain."""
-
-_CHANCES = (
-    (0.99, "virtually certain"),
-    (0.90, "very likely"),
-    (0.66, "likely"),
-    (0.33, "about as likely as not"),
-    (0.10, "unlikely"),
-    (0.01, "very unlikely"),
-    (-math.inf, "exceptionally unlikely"),
-)
-
-_EVIDENCE = (
-    (0.001, "repeats would hardly ever differ as much"),
-    (0.01, "repeats would very seldom differ as much"),
-    (0.05, "repeats would seldom differ as much"),
-    (0.2, "about 1 in {n} sets of repeats differs as much"),
-    (math.inf, "repeats often differ as much"),
-)
-
-
-def cause_of(name: str) -> Cause:
-    """Return the description of a cause; one that is not shipped is the user's own.
-
-    Examples
-    --------
-    >>> cause_of("mains_hum").name, cause_of("zero_offset").clause
-    ('mains hum', 'an effect of your own')
-    """
-    return CAUSES.get(name) or Cause(name.replace("_", " "), "an effect of your own")
-
-
-def chance(probability: float) -> str:
-    """Return a probability as a word and a number.
-
-    Examples
-    --------
-    >>> chance(0.96), chance(0.999), chance(0.004)
-    ('very likely, 96 %', 'virtually certain, > 99 %', 'exceptionally unlikely, < 1 %')
-    """
-    word = next(word for least, word in _CHANCES if probability >= least)
-    return f"{word}, {percent(probability)}"
-
-
-def evidence(p_value: float) -> str:
-    """Return a p-value as words.
-
-    Examples
-    --------
-    >>> evidence(0.0004), evidence(0.07), evidence(0.4)
-    ('repeats would hardly ever differ as much', 'about 1 in 14 sets of repeats differs as much',
-      'repeats often differ as much')
-    """
-    if not math.isfinite(p_value):
-        return NOT_DETERMINED
-    words = next(words for below, words in _EVIDENCE if p_value < below)
-    return words.format(n=round(1.0 / max(p_value, 1e-9)))
-
-
-def p_number(p_value: float) -> str:
-    """Return a p-value as text.
-
-    Examples
-    --------
-    >>> p_number(0.4), p_number(0.0123), p_number(0.00042), p_number(1e-7)
-    ('p = 0.40', 'p = 0.012', 'p = 0.0004', 'p < 0.0001')
-    """
-    if not math.isfinite(p_value):
-        return f"p {NOT_DETERMINED}"
-    if p_value < 1e-4:
-        return "p < 0.0001"
-    return f"p = {p_value:.{2 if p_value >= 0.1 else 3 if p_value >= 0.01 else 4}f}"
-
-
-def percent(share: float | None) -> str:
-    """Return a share in per cent; rounding never gives 0 or 100 %.
-
-    Examples
-    --------
-    >>> percent(0.5), percent(0.996), percent(0.001), percent(-0.2), percent(None)
-    ('50 %', '> 99 %', '< 1 %', '−20 %', 'not determined')
-    """
-    if share is None or not math.isfinite(share):
-        return NOT_DETERMINED
-    if 0.0 < share < 0.01:
-        return "< 1 %"
-    if 0.99 < share < 1.0:
-        return "> 99 %"
-    return f"{100 * share:.0f} %".replace("-", "\N{MINUS SIGN}")
-
-
-def number(value: float | None, form: str = ".2f") -> str:
-    """Return a number [any unit] as text.
-
-    Examples
-    --------
-    >>> number(-1.234), number(None)
-    ('−1.23', 'not determined')
-    """
-    if value is None or not math.isfinite(value):
-        return NOT_DETERMINED
-    return format(value, form).replace("-", "\N{MINUS SIGN}")
-
-
-def gap_number(gap: float | None, form: str = ".1f") -> str:
-    """Return a gap [-], relative to that of repeats of one run, as text.
-
-    Examples
-    --------
-    >>> gap_number(1.23), gap_number(100.0), gap_number(None)
-    ('1.2', 'more than 100', 'not determined')
-    """
-    if gap is not None and gap >= LARGEST_GAP:
-        return f"more than {LARGEST_GAP:g}"
-    return number(gap, form)
-
-
-def frequency(hertz: float) -> str:
-    """Return a frequency [Hz] as text.
-
-    Examples
-    --------
-    >>> frequency(50.0), frequency(1800.0), frequency(15e3)
-    ('50 Hz', '1.8 kHz', '15 kHz')
-    """
-    return f"{hertz / 1e3:.3g} kHz" if hertz >= 1e3 else f"{hertz:.3g} Hz"
-
-
-def joined(words: list[str] | tuple[str, ...], last: str = "and") -> str:
-    """Return an enumeration.
-
-    Examples
-    --------
-    >>> joined(["a", "b", "c"]), joined(["a"])
-    ('a, b and c', 'a')
-    """
-    if len(words) < 2:
-        return "".join(words)
-    return f"{', '.join(words[:-1])} {last} {words[-1]}"
+def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
+    """Return the stage that an effect acts in; empty if it is unknown."""
+    found = finding_of(diagnosis, name) or EFFECTS.get(name)
+    return "" if found is None else str(found.stage)
 
 
 AGREES = 2.0
@@ -289,8 +94,8 @@ def headline(diagnosis: Diagnosis) -> str:
 def answer(diagnosis: Diagnosis) -> list[str]:
     """Return all sentences of the answer.
 
-    In order: dead or clipping channels, agreement with the rig file, verdict, location, remainder,
-    equivalent effects. Recordings that cannot be of the rig have the reasons alone.
+    In order: dead or clipping channels, agreement with the rig file, verdict, location, equivalent
+    effects. Recordings that cannot be of the rig have the reasons alone.
 
     Examples
     --------
@@ -307,7 +112,6 @@ def answer(diagnosis: Diagnosis) -> list[str]:
         agreement_sentence(diagnosis),
         verdict_sentence(diagnosis),
         location_sentence(diagnosis),
-        _remainder(diagnosis),
         *(
             f"These channels cannot tell {cause_of(one).name} from {cause_of(other).name}."
             for one, other in diagnosis.equivalent
@@ -345,34 +149,27 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
         return ""
     n, n_far = len(rows), sum(one.gap > AGREES for one in rows)
     start = "The rig file describes the rig"
-    if n_far and not diagnosis.verdict:  # single recordings may deviate by chance
-        start = "The rig file describes the rig roughly"
-    elif n_far:
+    if n_far:
         start = f"The rig file describes {n - n_far or 'none'} of {n} recordings"
     elif diagnosis.verdict:
-        start = "The rig file describes the rig but for a difference that shows on a closer look"
+        start += " but for a difference that shows on a closer look"
     least, most = (gap_number(end(one.gap for one in rows)) for end in (min, max))
     reach = most if least == most else f"{least} to {most}"
     deviate = "the recording deviates" if n == 1 else "the recordings deviate"
     sentence = f"{start}: {deviate} {reach} times as much as repeat measurements do."
     if n_far:
-        sentence += f" {_farthest(rows)}."
+        farthest = max(rows, key=lambda one: one.gap)
+        sentence += f" Farthest is {farthest.recording}"
+        if channels := farthest.channels:
+            channel = max(channels, key=lambda name: channels[name])
+            sentence += f", most in the {channel} ({gap_number(channels[channel])} times)"
+        sentence += "."
     if diagnosis.verdict and diagnosis.p_value <= 1.0:
         sentence += (
             f" All recordings together deviate {gap_number(diagnosis.gap)} times as much "
             f"({p_number(diagnosis.p_value)})."
         )
     return sentence
-
-
-def _farthest(rows: Sequence[Agreement]) -> str:
-    """Return the recording that deviates most, and its channel that does."""
-    farthest = max(rows, key=lambda one: one.gap)
-    words = f"Farthest is {farthest.recording}"
-    if not farthest.channels:
-        return words
-    channel = max(farthest.channels, key=lambda name: farthest.channels[name])
-    return f"{words}, most in the {channel} ({gap_number(farthest.channels[channel])} times)"
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
@@ -383,7 +180,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     >>> from noise.diagnosis.outcome import Diagnosis
     >>> verdict_sentence(Diagnosis(("clipping",), (), None, {}, (), {"clipping": 0.96}, {}, "",
     ...                            (), 4.0, 1.0, 0.0, 1.0))
-    'The simulation lacks clipping: ... cuts off the peaks of a channel (very likely, 96 %).'
+    'The simulation lacks clipping: ... cuts off the peaks of a channel (96 %).'
     """
     match diagnosis.verdict:
         case ():
@@ -524,69 +321,47 @@ def _unlikely(diagnosis: Diagnosis) -> str:
 def _likely(diagnosis: Diagnosis, name: str, clause: str = "") -> str:
     """Return a clause and the probability of a cause in brackets; empty if neither is known."""
     known = diagnosis.probabilities.get(name)
-    inside = "; ".join(filter(None, (clause, "" if known is None else chance(known))))
+    inside = "; ".join(filter(None, (clause, "" if known is None else percent(known))))
     return f" ({inside})" if inside else ""
 
 
 def location_sentence(diagnosis: Diagnosis) -> str:
-    """Return where the gap lies; empty without a gap.
+    """Return where the gap lies, and which other stages differ significantly; empty without a gap.
 
-    First the stage of the location, then the others that differ significantly; these come first
-    where the stage of the location does not.
+    Parameters
+    ----------
+    diagnosis : Diagnosis
     """
     place = diagnosis.location
     if place is None:
         return ""
-    parts = [_channels_and_band(place)]
+
+    def row(stage: str) -> str:
+        """Return a stage with its share of the gap and p-value as in the table."""
+        found = diagnosis.stages.get(stage)
+        if found is None:
+            return f"in the {stage}"
+        return f"in the {stage} ({percent(found.share)} of the gap, {p_number(found.p_value)})"
+
+    low, high = place.band
+    band = f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"
+    parts = [f"in the {joined(place.channels)}, {band}" if place.channels else band]
     if place.phase != "all":
         parts.append(PHASES.get(place.phase, f"in the phase {place.phase}"))
     if place.conditions != "all":
         limit = place.conditions.replace("speed_rad_s", "speed")
         parts.append(f"where {limit.replace('>=', '≥').replace('<=', '≤')} rad/s")
-    sure = place.p_value <= SURE
-    verb = "may show" if not sure else "begins" if begins(diagnosis) else "shows"
-    sentence = (
-        f"The gap {verb} in the {_row_words(diagnosis, place.stage)}: {', '.join(parts)}; "
-        f"{evidence(place.p_value)}."
-    )
-    others = {n: one.share for n, one in diagnosis.stages.items()
-              if n != place.stage and one.p_value <= SURE}  # fmt: skip
-    if not others:
-        return sentence
-    ranked = sorted(others, key=lambda name: -others[name])
-    also = joined([f"in the {_row_words(diagnosis, name)}" for name in ranked])
-    if not sure:
-        return f"The gap shows {also}. It{sentence.removeprefix('The gap')}"
-    return f"{sentence} It shows {also} as well."
-
-
-def _row_words(diagnosis: Diagnosis, stage: str) -> str:
-    """Return a stage with its share of the gap and p-value as in the table."""
-    row = diagnosis.stages.get(stage)
-    if row is None:
-        return stage
-    return f"{stage} ({percent(row.share)} of the gap, {p_number(row.p_value)})"
-
-
-def _channels_and_band(place: Location) -> str:
-    low, high = place.band
-    band = f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"
-    return f"in the {joined(place.channels)}, {band}" if place.channels else band
-
-
-def _remainder(diagnosis: Diagnosis) -> str:
-    """Return what the fit of a verdict leaves; empty if that is within the scatter of repeats."""
-    left = diagnosis.remainder
-    if left is None or diagnosis.verdict == ("unknown",):
-        return ""
-    fitted = "refitted parameters" if diagnosis.verdict == ("parameters",) else "the fitted effects"
-    where = f"most in the {joined(left.channels)}"
-    if len(left.channels) == 1:
-        where += f" from {frequency(left.band[0])} to {frequency(left.band[1])}"
-    return (
-        f"With {fitted} held-out recordings still deviate {gap_number(left.gap)} times as much as "
-        f"repeats do, {where}: something else may be missing as well."
-    )
+    verb = "shows" if place.p_value <= SURE else "may show"
+    sentence = f"The gap {verb} {row(place.stage)}: {', '.join(parts)}."
+    others = {
+        name: one.share
+        for name, one in diagnosis.stages.items()
+        if name != place.stage and one.p_value <= SURE
+    }
+    if others:
+        ranked = sorted(others, key=lambda name: -others[name])
+        sentence += f" It shows {joined([row(name) for name in ranked])} as well."
+    return sentence
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:
@@ -670,14 +445,3 @@ def strength_words(finding: EffectFinding) -> str:
     unit = effect.parameters[effect.strength].unit if form in effect.forms else ""
     words = f"{parameter_name(effect.strength)} {low} to {high} {unit}".strip()
     return f"{words} (form {parameter_name(str(form))})" if len(effect.forms) > 1 else words
-
-
-def strength_sentence(finding: EffectFinding) -> str:
-    """Return the strength of a fitted effect; empty if it was not determined."""
-    if finding.strength is None:
-        return ""
-    name = cause_of(finding.name).name
-    return (
-        f"{name[0].upper()}{name[1:]} as fitted: {strength_words(finding)}, a 90 % interval that "
-        "allows for other forms. The effect's other numbers can shift it further."
-    )

@@ -14,8 +14,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from noise.base.files import atomic
-from noise.diagnosis.fit.closing import CLOSABLE
-from noise.diagnosis.gap import KINDS, closed_fraction
+from noise.diagnosis.fit.closing import CLOSABLE, closed_fraction
 from noise.diagnosis.improved_file import NAME, improved_sentence
 from noise.diagnosis.outcome import (
     SURE,
@@ -25,28 +24,28 @@ from noise.diagnosis.outcome import (
     as_json,
 )
 from noise.diagnosis.sentences import (
-    NOT_DETERMINED,
-    STAGES,
     agreement_sentence,
     answer,
-    begins,
-    cause_of,
     closed_words,
-    evidence,
     finding_of,
     fit_sentence,
-    gap_number,
     headline,
     is_named,
+    parameters_off,
+    stage_of_effect,
+    strength_words,
+)
+from noise.diagnosis.signature import KINDS
+from noise.diagnosis.words import (
+    NOT_DETERMINED,
+    STAGES,
+    cause_of,
+    gap_number,
     joined,
     number,
     p_number,
     parameter_name,
-    parameters_off,
     percent,
-    stage_of_effect,
-    strength_sentence,
-    strength_words,
 )
 from noise.pages import blocks as b
 from noise.pages.clips import Clip, Entry
@@ -196,9 +195,9 @@ def stages_chain(diagnosis: Diagnosis) -> list[dict[str, object]]:
             if math.isfinite(finding.gap):
                 gap = f"gap {gap_number(finding.gap, '.2f')}, {percent(finding.share)} of all"
         unsure = ", not certain" if SURE < p_value < 0.2 else ""
-        known = f"{p_number(p_value)}{unsure}: {evidence(p_value)}"
+        known = f"{p_number(p_value)}{unsure}"
         causes = [cause_of(c).name for c in named if stage_of_effect(diagnosis, c) == name]
-        guilty = begins(diagnosis) and place is not None and place.stage == name
+        guilty = place is not None and place.stage == name and place.p_value <= SURE
         chain.append(
             {"name": name, "what": what, "gap": gap, "guilty": guilty, "causes": causes,
              "p_value": known if math.isfinite(p_value) else ""}
@@ -443,7 +442,6 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
             ("Model", f"Gap; the line is that of repeats, {floor:.2f}"), rows, style="waterfall"
         ),
         b.Text(words or "How much of the gap can be closed was not determined."),
-        *(b.Text(strength_sentence(one)) for one in diagnosis.effects if one.name in verdict),
         b.Text(
             f"The gap here is that of {of}. The nominal model is the rig file as it is; then its "
             "stiffness, torques, damping and inertia are refitted; then the effect is added.",

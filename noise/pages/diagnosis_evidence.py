@@ -22,7 +22,7 @@ from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
 from noise.audio.sound import audible
 from noise.diagnosis.outcome import ROLES, Illustration
-from noise.diagnosis.sentences import number
+from noise.diagnosis.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
 from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips

@@ -11,7 +11,7 @@ from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.gap import group_costs, signature
+from noise.diagnosis.signature import group_costs, signature
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import (

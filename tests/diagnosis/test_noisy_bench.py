@@ -7,8 +7,10 @@ import pytest
 
 from noise.diagnosis.causes.posterior import as_seldom
 from noise.diagnosis.diagnose import diagnose
-from noise.diagnosis.gap import NAMES, gap_of, reference
+from noise.diagnosis.floor import reference
+from noise.diagnosis.gap import gap_of
 from noise.diagnosis.sentences import headline, verdict_sentence
+from noise.diagnosis.signature import NAMES
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
 

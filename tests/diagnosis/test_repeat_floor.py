@@ -12,16 +12,9 @@ from models.condition import Condition
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
-from noise.diagnosis.gap import (
-    GROUPS,
-    NAMES,
-    block_signatures,
-    floor_widening,
-    gap_of,
-    reference,
-    references_of,
-    signature,
-)
+from noise.diagnosis.floor import floor_widening, reference, references_of
+from noise.diagnosis.gap import gap_of
+from noise.diagnosis.signature import GROUPS, NAMES, block_signatures, signature
 from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from tests.blind.cases import run_case, write_case

@@ -14,7 +14,6 @@ from noise.diagnosis.outcome import (
     EffectFinding,
     Illustration,
     Location,
-    Remainder,
     StageFinding,
 )
 from sim.run import simulate
@@ -169,7 +168,6 @@ def unknown():
         ("unknown",),
         effects=(tried,),
         probabilities={"unknown": 0.88, "velocity_weakening": 0.12, **SMALL},
-        remainder=Remainder(4.8, ("torque", "pressure"), (500.0, 1400.0)),
         next_measurement="Two speeds more, with the clamp bolted down.",
         illustrations=(illustration("run03", run(PARTIAL), run(), None),),
     )

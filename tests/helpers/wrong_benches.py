@@ -75,13 +75,6 @@ def _sound(recording, rng, *, speech):
     return replace(recording, samples=0.3 * np.stack(shifted))
 
 
-def _reversed(recording, _rng, *, angle_rises=False):
-    samples = np.array(recording.samples[:, ::-1])
-    if angle_rises:
-        samples[recording.first("angle")] *= -1.0
-    return replace(recording, samples=samples)
-
-
 def _shuffled(recordings, rng):
     """Give recordings each other's conditions, none of an equal one its own."""
     conditions = [recording.condition for recording in recordings]
@@ -114,10 +107,6 @@ WRONG_BENCHES = {
     "white noise": (_each(_noise), ""),
     "music": (_each(lambda r, rng: _sound(r, rng, speech=False)), ""),
     "speech": (_each(lambda r, rng: _sound(r, rng, speech=True)), ""),
-    "time reversed": (_each(_reversed), "time runs backwards"),
-    "time reversed, angle rising": (
-        _each(lambda r, rng: _reversed(r, rng, angle_rises=True)), "time runs backwards",
-    ),
     "conditions shuffled": (_shuffled, ""),
 }  # fmt: skip
 """By name: what is done to the recordings of a case, and words of the finding."""

@@ -13,9 +13,9 @@ import pytest
 
 from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
 from noise.base.labels import LABELS, MAP_LABELS, NAMED, PERSISTS
-from noise.diagnosis.gap import closed_fraction
+from noise.diagnosis.fit.closing import closed_fraction
 from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
-from noise.diagnosis.sentences import AGREES, answer, finding_of, fit_sentence, strength_sentence
+from noise.diagnosis.sentences import AGREES, answer, finding_of, fit_sentence
 from noise.identification.outcome import Identification, LawScore, Number
 from noise.labels.summary import result_lines
 from noise.pages.cards import draw_entries
@@ -126,7 +126,7 @@ def printed(diagnosis):
     sentences = [*answer(diagnosis)]
     finding = finding_of(diagnosis, diagnosis.verdict[0]) if diagnosis.verdict else None
     if finding is not None:
-        sentences += [fit_sentence(finding), strength_sentence(finding)]
+        sentences.append(fit_sentence(finding))
     return sentences
 
 

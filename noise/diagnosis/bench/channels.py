@@ -1,4 +1,4 @@
-"""Detection of channels that are swapped, in a wrong unit, inverted, or reversed in time.
+"""Detection of channels that are swapped, in a wrong unit or inverted.
 
 The angle is compared with the stated speed, the torque with the kinetic torque of the fit,
 acceleration and sound with the prediction of the rig's path from the recorded torque. These ratios
@@ -139,21 +139,15 @@ class Levels:
         rotation [-]; None without a torque.
     swing : float
         Standard deviation of the torque over the kinetic torque [-].
-    falls : float
-        Skewness of the torque's rate, negative if the torque rises slowly and falls fast [-].
     paths : mapping of (str, str) to PathFit
         Fits of the prediction from the torque, by recorded channel and by path of the prediction.
-    backwards : mapping of str to PathFit
-        Fits of each channel with its own path, with time reversed.
     """
 
     speed: float
     turned: float | None
     torque: float | None
     swing: float
-    falls: float
     paths: Mapping[tuple[str, str], PathFit] = field(default_factory=dict)
-    backwards: Mapping[str, PathFit] = field(default_factory=dict)
 
 
 def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFunctionCache) -> Levels:
@@ -179,23 +173,18 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
     }
     turned = _turning(signal["angle"], rate) if "angle" in signal else None
     if "torque" not in signal:
-        return Levels(c.speed, turned, None, 0.0, 0.0)
+        return Levels(c.speed, turned, None, 0.0)
     torque, kinetic = signal["torque"], rig.fit(c.interference).kinetic_torque
     paths: dict[tuple[str, str], PathFit] = {}
-    backwards: dict[str, PathFit] = {}
-    outputs = [kind for kind in ("acceleration", "pressure") if kind in signal]
+    outputs = [kind for kind in OUTPUTS if kind in signal]
     if outputs and float(np.ptp(torque)) > 0.0:
         functions = transfer_functions.whole(recording)
         for path in outputs:
-            forth = predict(torque, rate, functions[path])
+            predicted = predict(torque, rate, functions[path])
             for kind in outputs:
-                paths[kind, path] = path_fit(forth, signal[kind], rate)
-            back = predict(torque[::-1], rate, functions[path])
-            backwards[path] = path_fit(back, signal[path][::-1], rate)
-    return Levels(
-        c.speed, turned, math.copysign(1.0, c.speed) * float(torque.mean()) / kinetic,
-        float(torque.std()) / kinetic, _falling(torque, rate), paths, backwards,
-    )  # fmt: skip
+                paths[kind, path] = path_fit(predicted, signal[kind], rate)
+    braking = math.copysign(1.0, c.speed) * float(torque.mean()) / kinetic
+    return Levels(c.speed, turned, braking, float(torque.std()) / kinetic, paths)
 
 
 def path_fit(predicted: Array, measured: Array, rate: float) -> PathFit:
@@ -253,16 +242,6 @@ def _turning(angle: Array, rate: float) -> float:
     return float(time @ (angle - angle.mean())) / float(time @ time)
 
 
-def _falling(torque: Array, rate: float) -> float:
-    """Return the skewness of the torque's rate over blocks of 0.3 ms [-]."""
-    block = max(1, int(3e-4 * rate))
-    smooth = torque[: torque.size // block * block].reshape(-1, block).mean(axis=1)
-    step = np.diff(smooth)
-    step -= step.mean()
-    spread = float(step.std())
-    return float(np.mean(step**3)) / spread**3 if spread > 0.0 else 0.0
-
-
 _RISE = 0.3
 """Rise of a channel from its start to its end, over its mean, above which it is a ramp such as an
 angle [-]; an angle rises by at least twice this, and a torque drifts less; assumed."""
@@ -293,9 +272,6 @@ _SWINGING_WELL = 0.05
 
 _AGAINST = 0.9
 """Least magnitude of the negative correlation of an inverted channel [-]; assumed."""
-
-_RISING = 0.5
-"""Least skewness of the rate of a torque that rises fast and falls slowly [-]; assumed."""
 
 
 def swapped_outputs(levels: Sequence[Levels]) -> str:
@@ -435,24 +411,6 @@ def turned_channels(levels: Sequence[Levels]) -> Iterator[str]:
         alike = [p.alike for one in _slipping(levels) if (p := one.paths.get((kind, kind)))]
         if len(alike) > 2 and max(alike) < -_AGAINST:
             yield f"channel {kind} has its sign turned against what the torque makes of it"
-
-
-def backwards(levels: Sequence[Levels]) -> str:
-    """Return a finding if time is reversed; otherwise empty.
-
-    A contact loads slowly and releases at once, so that the torque falls faster than it rises.
-    """
-    slipping = [one for one in _slipping(levels) if one.torque is not None]
-    if not slipping:
-        return ""
-    rises = [one.falls * math.copysign(1.0, one.torque or 1.0) for one in slipping]
-    if float(np.median(rises)) < _RISING:
-        return ""
-    forth = [abs(one.paths[k, k].alike) for one in slipping for k in one.backwards]
-    back = [abs(fit.alike) for one in slipping for fit in one.backwards.values()]
-    if forth and float(np.median(back)) < float(np.median(forth)):
-        return ""
-    return "time runs backwards: the torque rises at once and falls slowly"
 
 
 def _slipping(levels: Sequence[Levels], scale: float = 1.0) -> list[Levels]:

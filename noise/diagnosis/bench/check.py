@@ -30,7 +30,6 @@ from noise.base.arrays import Array
 from noise.diagnosis.bench.channels import (
     SWINGING,
     Levels,
-    backwards,
     factor_words,
     levels_of,
     swapped_outputs,
@@ -180,10 +179,6 @@ _LIKE, _UNLIKE = 2.0, 3.0
 """Largest root mean square difference to the other material, and least difference to the rig file,
 in standard errors and as a multiple of the former [-]; assumed."""
 
-_SILENT = 1.0
-"""Value of `_LIKE` if nothing slips in recordings and simulation, so that only the mean torque is
-compared [-]; assumed."""
-
 _CYCLES = (15.0, 1500.0)
 """Range of slip rates [Hz]; assumed."""
 
@@ -210,33 +205,28 @@ def another_material(
 
     Otherwise the text is empty.
     """
-    torque = [recording.first("torque") for recording in case.recordings]
-    if any(row is None for row in torque):
+    if any(recording.first("torque") is None for recording in case.recordings):
         return ""
     courses = [_course(recording) for recording in case.recordings]
-    silent = all(_silent(course) for course in courses)
 
     def difference(rig: Rig, most: float) -> float:
         """Return the RMS difference to a rig [-], infinite above `most` [-]."""
         squares: list[Array] = []
-        n = sum(1 if silent else course.size for course in courses)
         for course, recording in zip(courses, case.recordings, strict=True):
             at = _within(rig, recording)
             try:
                 (made,) = nominal_repeats(at, rig, transfer_functions, [0], library=library)
             except BushingNoiseError:
                 return np.inf
-            expected = _course(made)
-            both = silent and _silent(expected)
-            squares.append((((course - expected) / _ERRORS) ** 2)[: 1 if both else None])
-            if sum(map(np.sum, squares)) > n * most**2:
+            squares.append(((course - _course(made)) / _ERRORS) ** 2)
+            if sum(map(np.sum, squares)) > len(courses) * _ERRORS.size * most**2:
                 return np.inf  # the other recordings cannot lower it
         return float(np.sqrt(np.concatenate(squares).mean()))
 
     own = difference(case.rig, np.inf)
     if own < _UNLIKE:
         return ""
-    most = min(_SILENT if silent else _LIKE, own / _UNLIKE)
+    most = min(_LIKE, own / _UNLIKE)
     for name in material_names():
         other = load_material_rig(name)
         names = sorted((other.material, case.rig.material), key=len)
@@ -260,11 +250,6 @@ def _course(recording: Recording) -> Array:
     inside = (frequency > _CYCLES[0]) & (frequency < _CYCLES[1])
     middle = float(frequency[inside] @ power[inside]) / (float(power[inside].sum()) + 1e-300)
     return np.log(np.maximum([mean, swing, middle], 1e-12))
-
-
-def _silent(course: Array) -> bool:
-    """Return whether nothing slips in the recording of a `_course`."""
-    return bool(course[2] <= np.log(_CYCLES[0]))
 
 
 def _within(rig: Rig, recording: Recording) -> Recording:
@@ -297,14 +282,12 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
         return case.unusable
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(recording, case.rig, cache) for recording in case.recordings]
-    for first in (swapped_outputs(levels), backwards(levels), shuffled_conditions(case, levels)):
-        if first:
-            return (first,)
-    findings = [*turned_channels(levels), *wrong_units(levels), wrong_speed(levels)]
-    if findings := [text for text in findings if text]:
-        return tuple(findings)
-    level = another_level(levels)
-    other = level or another_material(case, cache, library)
+    if first := swapped_outputs(levels) or shuffled_conditions(case, levels):
+        return (first,)
+    each = (*turned_channels(levels), *wrong_units(levels), wrong_speed(levels))
+    if findings := tuple(filter(None, each)):
+        return findings
+    other = another_level(levels) or another_material(case, cache, library)
     return (other,) if other else ()
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -248,10 +248,6 @@ def _built(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Sta
     return StageNulls(names=tuple(header["names"]), **own)
 
 
-_FLAT = len(STAGES) / 140.0
-"""p-value of the measurement where a channel's peaks are flat [-]: none of 139 development cases
-without clipping had such (`noise.diagnosis.first_answer`), and there are five stages."""
-
 _WHOLE_BAND = (0.0, 1800.0)
 """Of a difference that is in no band: where the contact's cycle lives [Hz]; assumed."""
 
@@ -264,9 +260,7 @@ _PHASES = {
 }
 
 
-def stage_findings(
-    table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
-) -> dict[str, StageFinding]:
+def stage_findings(table: CaseTable, nulls: StageNulls) -> dict[str, StageFinding]:
     """Return the gap, share and p-value of each stage.
 
     The gap is that of the number that differs most, over what is usual without a cause; the
@@ -276,19 +270,14 @@ def stage_findings(
     ----------
     table : CaseTable
     nulls : StageNulls
-    flat : collection of str
-        Kinds of channel that are overloaded: whatever differs in them is the sensor's.
     """
     size, surprise = nulls.sizes(table), nulls.surprises(table)
-    stages = np.array([_stage(name, flat) for name in nulls.names])
+    stages = np.array([stage_of(name) for name in nulls.names])
     of_stage = {}
     for i, stage in enumerate(STAGES):
         inside = stages == stage
         gap = min(largest_of(size[inside]) / float(nulls.typical[i]), LARGEST_GAP)
         of_stage[stage] = (gap, _p_value(largest_of(surprise[inside]), nulls.largest[:, i]))
-    if flat:
-        gap, p_value = of_stage["measurement"]
-        of_stage["measurement"] = (gap, min(p_value, _FLAT))
     excess = {stage: max(gap - 1.0, 0.0) ** 2 for stage, (gap, _) in of_stage.items()}
     whole = sum(excess.values())
     return {
@@ -297,9 +286,7 @@ def stage_findings(
     }
 
 
-def locate(
-    table: CaseTable, nulls: StageNulls, stage: str | None = None, flat: Collection[str] = ()
-) -> Location:
+def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Location:
     """Return the place where the difference is most significant.
 
     Parameters
@@ -308,14 +295,12 @@ def locate(
     nulls : StageNulls
     stage : str, optional
         Where to look; by default the stage that differs most surely.
-    flat : collection of str
-        As of `stage_findings`.
     """
-    findings = stage_findings(table, nulls, flat)
+    findings = stage_findings(table, nulls)
     if stage is None:
         stage = min(findings, key=lambda name: (findings[name].p_value, -findings[name].gap))
     names = nulls.names
-    inside = np.array([_stage(name, flat) == stage for name in names])
+    inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
     sizes = np.nan_to_num(nulls.surprises(table))
@@ -336,17 +321,13 @@ def locate(
     )
 
 
-def differences(
-    table: CaseTable, nulls: StageNulls, flat: Collection[str] = ()
-) -> tuple[Location, ...]:
+def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
     """Return the significant differences by stage, channel, band and phase of the cycle.
 
     Parameters
     ----------
     table : CaseTable
     nulls : StageNulls
-    flat : collection of str
-        As of `stage_findings`.
 
     Returns
     -------
@@ -360,7 +341,7 @@ def differences(
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
     for i, name in enumerate(names):
         if np.isfinite(size[i]):
-            key = (_stage(name, flat), _channel(name), _band(name), _phase(name))
+            key = (stage_of(name), _channel(name), _band(name), _phase(name))
             places.setdefault(key, []).append(i)
     places_by_p = []
     for (stage, channel, band, phase), numbers in places.items():
@@ -374,10 +355,6 @@ def differences(
         if place.p_value <= SURE:
             places_by_p.append((place.p_value, -most, place))
     return tuple(place for _, _, place in sorted(places_by_p, key=lambda entry: entry[:2]))
-
-
-def _stage(name: str, flat: Collection[str]) -> str:
-    return "measurement" if _channel(name) in flat else stage_of(name)
 
 
 def _p_value(size: float, null: NDArray[np.float64]) -> float:

@@ -30,14 +30,9 @@ from noise.diagnosis.evidence.summary import (
     same_channels,
     signals_of,
 )
-from noise.diagnosis.gap import (
-    Gap,
-    Reference,
-    gap_of,
-    group_costs,
-    references_of,
-    signature,
-)
+from noise.diagnosis.floor import Reference, references_of
+from noise.diagnosis.gap import Gap, gap_of
+from noise.diagnosis.signature import signature, squared_distance
 from noise.diagnosis.simulated.model_runs import (
     Model,
     ModelRuns,
@@ -234,7 +229,7 @@ class CaseComparison:
             (deviation,) = self.deviations(model, [place])
         except ParameterError:
             return math.inf
-        return self.references[place].squared_of(deviation)
+        return self.references[place].squared(deviation)
 
     def misfits(
         self, model: Model, chosen: Sequence[int], *, single_run: bool = False
@@ -259,7 +254,7 @@ class CaseComparison:
 
         def misfit(place: int) -> float:
             away = self._away(model, place, single_run=single_run)
-            return math.sqrt(float(np.nanmean(group_costs(away))))
+            return math.sqrt(squared_distance(away))
 
         try:
             return np.array(self._each(misfit, chosen))

@@ -10,8 +10,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from noise.diagnosis.gap import closed_fraction
-
 CLOSABLE = 0.5
 """A gap is worth closing from so many floors above the floor; assumed."""
 
@@ -21,6 +19,22 @@ recordings of quiet development cases without a cause (seed 4) it is 0.36."""
 
 _LEVEL = (5.0, 95.0)
 _DRAWS = 400
+
+
+def closed_fraction(before: float, after: float, floor: float = 1.0) -> float:
+    """Share of what lies above the floor that is closed; negative where the gap grew [-].
+
+    Parameters
+    ----------
+    before, after, floor : float
+        Gaps without and with a change, and that of repeats, all in floors [-].
+
+    Examples
+    --------
+    >>> closed_fraction(3.0, 1.5)
+    0.75
+    """
+    return (before - after) / (before - floor)
 
 
 def rms(squared: NDArray[np.float64]) -> float:

@@ -26,8 +26,8 @@ from noise.diagnosis.first_answer import FirstAnswer, known_effects
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import CLOSABLE, closed_of, rms, room_of
 from noise.diagnosis.fit.fit import Fitted, fit_effects, fit_parameters, split
-from noise.diagnosis.sentences import joined
 from noise.diagnosis.simulated.model_runs import Model
+from noise.diagnosis.words import joined
 from sim.effects import EFFECTS, irregular_effects
 from sim.effects.effect import Effect
 

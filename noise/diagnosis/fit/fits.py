@@ -1,7 +1,6 @@
-"""Findings of the fits of a diagnosis: closed shares, residual gap, illustrations, improved rig.
+"""Findings of the fits of a diagnosis: closed shares, illustrations, improved rig.
 
-What is left once the likeliest hypothesis is fitted: how much, in which channel and band. Held-out
-recordings beside simulations of them, to be seen and heard.
+Illustrations are held-out recordings beside simulations of them, to be seen and heard.
 
 The improved rig is a fit in the form of a rig file that closes the gap. What fits best need not
 predict best: parameters that repeats scatter in are soon fitted to the scatter of a few recordings.
@@ -28,8 +27,7 @@ from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.fit import Fitted, fit_closer, fit_effects
-from noise.diagnosis.gap import worst_places
-from noise.diagnosis.outcome import EffectFinding, Illustration, Improvement, Remainder
+from noise.diagnosis.outcome import EffectFinding, Illustration, Improvement
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns, with_effects
 
 if TYPE_CHECKING:
@@ -74,34 +72,6 @@ def illustrations_of(
             fitted = None if after is None else after(measured)
             illustrations.append(Illustration(case.names[i], measured, before(measured), fitted))
     return tuple(illustrations)
-
-
-_LEFT = 2.0
-"""Floors from which on a gap after a fit is one to explain; assumed. Of simulated repeats 5 % are
-farther off (`noise.diagnosis.sentences.AGREES`)."""
-
-
-def remainder_of(comparison: CaseComparison, model: Model, held: Sequence[int]) -> Remainder | None:
-    """Return the residual gap of a fitted model on held-out recordings.
-
-    Parameters
-    ----------
-    comparison : CaseComparison
-    model : Model
-    held : sequence of int
-        These recordings.
-
-    Returns
-    -------
-    Remainder or None
-        None where it leaves no more than repeats differ by, or cannot be simulated there.
-    """
-    try:
-        deviations = np.array(comparison.deviations(model, held))
-    except ParameterError:
-        return None
-    gap = rms(comparison.squared(model, held))
-    return None if gap < _LEFT else Remainder(gap, *worst_places(deviations))
 
 
 def add_fits(
@@ -154,7 +124,6 @@ def add_fits(
     return replace(
         diagnosis,
         parameters=_intervals(best),
-        remainder=remainder_of(comparison, best.model, held),
         illustrations=illustrations_of(case, held, nominal, shown),
         improvement=improvement,
     )

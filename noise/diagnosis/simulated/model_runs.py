@@ -22,7 +22,7 @@ from models.recording import Channel, Recording
 from models.rig import Fit, LawSpec, Rig
 from models.sensors import Sensor
 from noise.base.arrays import Array
-from noise.diagnosis.gap import KINDS, signature
+from noise.diagnosis.signature import KINDS, signature
 from noise.diagnosis.simulated.repeats import (
     Scatter,
     condition_key,
@@ -203,7 +203,7 @@ class ModelRuns:
         Returns
         -------
         ndarray, shape (n_values,)
-            As of `noise.diagnosis.gap.signature`.
+            As of `noise.diagnosis.signature.signature`.
 
         Raises
         ------
