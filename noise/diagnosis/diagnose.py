@@ -54,6 +54,11 @@ _AS_REPEATS = 0.5
 """p-value from which on a stage differs as repeats do [-]; assumed."""
 
 
+_ROOM, _NEAR_ROOM = 23.0, 5.0
+"""At which the shipped bushings are given, and about which they are as they are
+[degree Celsius]; assumed."""
+
+
 def diagnose(
     data: str | Path | Sequence[str | Path],
     rig: Rig | str | Path,
@@ -270,8 +275,10 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
     """
     at = [known_condition(recording.condition) for recording in case.recordings]
     heat = sorted({c.temperature for c in at if c.temperature is not None})
+    shipped = assumed_fit(case.rig)
+    elsewhere = shipped and any(abs(t - _ROOM) > _NEAR_ROOM for t in heat)
     remarks = [
-        assumed_fit(case.rig),
+        shipped,
         *use_remarks(
             case.rig,
             speed=[c.speed for c in at],
@@ -280,7 +287,9 @@ def case_remarks(case: Case, library: Mapping[str, Effect]) -> list[str]:
             temperature=heat,
         ),
         *effect_remarks(case.rig, library),
-        temperature_remark(case.rig, *heat) if case.rig.temperature or len(heat) > 1 else "",
+        temperature_remark(case.rig, *heat)
+        if case.rig.temperature or len(heat) > 1 or elsewhere
+        else "",
     ]
     return [text for text in dict.fromkeys(remarks) if text]
 

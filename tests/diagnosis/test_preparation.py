@@ -10,15 +10,9 @@ from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
 from noise.diagnosis.evidence.channel_summary import path_summary
-from noise.diagnosis.prepare import (
-    at_measured_speeds,
-    converter_step,
-    estimated_noise,
-    settled_parts,
-    shortest,
-    start_of,
-    with_estimated_sensors,
-)
+from noise.diagnosis.prepare import at_measured_speeds, settled_parts, shortest
+from noise.diagnosis.sensors import converter_step, estimated_noise, with_estimated_sensors
+from noise.diagnosis.starts import start_of
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG
 
@@ -192,10 +186,3 @@ def test_what_a_rig_file_states_of_a_sensor_stays():
     seen, notes = with_estimated_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
     assert seen.sensors.of("torque") == stated
     assert notes == ()
-
-
-@given(size=st.floats(0.0, 1.0), slips=st.floats(40.0, 150.0))
-def test_a_run_up_shows_in_how_fast_a_torque_rises(size, slips):
-    turned = np.cumsum(STARTS["run_up"](size)) / RATE
-    run = through(8.0 + 4.0 * np.mod(slips * turned, 1.0), noise=0.005)
-    assert start_of(run) == pytest.approx(0.15 + 0.25 * size, abs=0.05)

@@ -15,7 +15,7 @@ from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import unlearned_sensors
 from noise.diagnosis.gap import Gap
-from noise.diagnosis.prepare import estimated_noise, with_estimated_sensors
+from noise.diagnosis.sensors import estimated_noise, with_estimated_sensors
 from noise.diagnosis.signature import NAMES
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
