@@ -23,6 +23,7 @@ from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.base.user_effects import effect_library
 from noise.diagnosis.bench.check import bench_findings
 from noise.diagnosis.case import Case, read_case
+from noise.diagnosis.causes.advice import channel_costs, equivalent_pairs, next_measurement
 from noise.diagnosis.causes.location import (
     StageNulls,
     differences,
@@ -30,13 +31,8 @@ from noise.diagnosis.causes.location import (
     locate,
     stage_findings,
 )
-from noise.diagnosis.causes.posterior import Posterior, load_posterior
-from noise.diagnosis.causes.verdict import (
-    UNUSUAL,
-    channel_costs,
-    equivalent_pairs,
-    next_measurement,
-)
+from noise.diagnosis.causes.posterior import load_posterior
+from noise.diagnosis.causes.verdict import UNUSUAL
 from noise.diagnosis.first_answer import FirstAnswer, first_answer
 from noise.diagnosis.outcome import Agreement, Diagnosis, EffectFinding, StageFinding
 from noise.diagnosis.sentences import AGREES
@@ -116,7 +112,6 @@ def diagnose_case(
     *,
     quick: bool = False,
     library: Mapping[str, Effect] | None = None,
-    posterior: Posterior | None = None,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
@@ -129,7 +124,6 @@ def diagnose_case(
         Whether to give the first answer alone, without fits.
     library : mapping of str to Effect, optional
         Effects that may be missing, the user's own among them.
-    posterior : Posterior, optional
     seed : int
         Of simulations and bootstraps.
     progress : callable, optional
@@ -146,7 +140,7 @@ def diagnose_case(
     if findings := bench_findings(case, library):
         answer = _another_bench(case, findings, library)
         return replace(answer, seconds=time.perf_counter() - started)
-    posterior, nulls = posterior or load_posterior(), load_stage_nulls()
+    posterior, nulls = load_posterior(), load_stage_nulls()
     first = first_answer(case, library, posterior, seed, tell)
     if quick:
         answer = _stated(case, first, first, nulls, library)
@@ -169,14 +163,14 @@ def _stated(
     library: Mapping[str, Effect],
 ) -> Diagnosis:
     """Return a diagnosis with location, alternatives and next measurement."""
-    verdict, probabilities = judged.verdict, judged.probabilities
-    findings = stage_findings(first.table, nulls)
+    verdict, probabilities, table = judged.verdict, judged.probabilities, first.comparison.table
+    findings = stage_findings(table, nulls)
     ranked = sorted(probabilities, key=lambda name: -probabilities[name])
     ranked = [name for name in ranked if name in library]
     stage = library[verdict[0]].stage.value if verdict and verdict[0] in library else None
     if stage is not None and findings[stage].p_value >= _AS_REPEATS:
         stage = None  # it shows elsewhere
-    place = locate(first.table, nulls, stage)
+    place = locate(table, nulls, stage)
     agreement = []
     for name, recording, gap, each in zip(
         case.names, case.recordings, first.gap.of_recordings, first.gap.of_channels, strict=True
@@ -218,7 +212,7 @@ def _stated(
             *first.unlearned,
             *case_remarks(case, library),
         ),
-        differences=differences(first.table, nulls),
+        differences=differences(table, nulls),
         agreement=tuple(agreement),
         faults=case.faults,
     )

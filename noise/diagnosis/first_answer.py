@@ -17,6 +17,7 @@ from models.recording import Recording
 from models.rig import Rig
 from models.sensors import Sensors
 from noise.diagnosis.case import Case
+from noise.diagnosis.causes.advice import unseen_causes
 from noise.diagnosis.causes.posterior import CAUSES, Posterior, as_seldom, null_log_odds
 from noise.diagnosis.causes.verdict import (
     UNUSUAL,
@@ -25,11 +26,10 @@ from noise.diagnosis.causes.verdict import (
     likeliest,
     marginals,
     needs_explaining,
-    unseen_causes,
     with_none,
 )
 from noise.diagnosis.evidence.channel_summary import USABLE
-from noise.diagnosis.evidence.summary import CaseTable, case_table, lacking_coherence
+from noise.diagnosis.evidence.summary import case_table, lacking_coherence
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.gap import Gap
 from sim.acquisition import THESIS_CONVERTER, Acquisition
@@ -136,11 +136,6 @@ class FirstAnswer:
     verdict: tuple[str, ...]
     suspected: tuple[str, ...]
     unlearned: tuple[str, ...]
-
-    @property
-    def table(self) -> CaseTable:
-        """Numbers of the recordings, and of simulated repeats."""
-        return self.comparison.table
 
 
 def known_effects(rig: Rig, library: Mapping[str, Effect]) -> set[str]:

@@ -9,15 +9,14 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from models.bushing import TemperatureDependence
+from models.condition import FIXED
 from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import rig_text
@@ -40,7 +39,6 @@ from noise.identification.outcome import (
     LawScore,
     Number,
     RecordingFit,
-    as_json,
 )
 from sim.effects import EFFECTS
 from sim.friction import friction_law
@@ -86,7 +84,11 @@ def identify_rig(
     for one in measurements.used:
         alone = fit_bushing(one, beforehand.known)
         recordings.append(RecordingFit(one, alone, torque_levels(alone)))
-        tell(_sentence(recordings[-1]))
+        levels = recordings[-1].levels
+        tell(
+            f"{one.name}: damping {alone.damping:.3g} Nm s/rad, breaks at {levels.critical:.3g} "
+            f"and slides at {levels.kinetic:.3g} Nm, {levels.slips} slips"
+        )
     if not any(one.levels.slips for one in recordings):
         raise NothingSlipsError(
             "no recording shows stick and slip, so that neither stiffness nor torques can be told; "
@@ -181,23 +183,20 @@ def result_lines(result: Identification) -> list[str]:
       (11.56 to 11.99) Nm; 90 % intervals']
     """
     law = next(one.in_rig_file for one in CANDIDATES if one.name == result.law)
-    lines = []
-    for place in sorted(
-        {one.interference for one in result.numbers if one.interference is not None}
-    ):
-        here = [one for one in result.numbers if one.interference == place]
-        parts = [_number_words(one) for name in _SUMMARY for one in here if one.name == name]
-        lines.append(f"{law}; at {1e3 * place:g} mm: {', '.join(parts)}; 90 % intervals")
-    return lines
-
-
-def _number_words(number: Number) -> str:
-    """Return a number of the summary with its support and interval."""
-    support = number.support_stiffness
-    where = "" if support is None else f" at a support of {support:g} Nm/rad"
-    where = " with the clamp fixed" if support == math.inf else where
-    interval = f"{number.value:.4g} ({number.low:.4g} to {number.high:.4g})"
-    return f"{_SUMMARY[number.name]}{where} {interval} {number.unit}"
+    parts: dict[float, list[str]] = {}
+    for name, words in _SUMMARY.items():
+        for one in (one for one in result.numbers if one.name == name):
+            where = ""
+            if one.support_stiffness is not None:
+                where = f" at a support of {one.support_stiffness:g} Nm/rad"
+                where = " with the clamp fixed" if one.support_stiffness == FIXED else where
+            interval = f"{one.value:.4g} ({one.low:.4g} to {one.high:.4g})"
+            here = parts.setdefault(one.interference or 0.0, [])
+            here.append(f"{words}{where} {interval} {one.unit}")
+    return [
+        f"{law}; at {1e3 * place:g} mm: {', '.join(parts[place])}; 90 % intervals"
+        for place in sorted(parts)
+    ]
 
 
 _SUMMARY = {
@@ -207,11 +206,6 @@ _SUMMARY = {
     "law_kinetic_torque": "kinetic torque",
 }
 """Numbers of the summary, in words."""
-
-
-def identification_json(data: Path, rig: Path) -> dict[str, Any]:
-    """Return the content of ``identification.json`` for a folder."""
-    return as_json(identify(data, rig))
 
 
 def _notes(
@@ -277,28 +271,16 @@ def _structure(beforehand: Beforehand) -> str:
     return f"structure, plate and microphone are those of {whose}"
 
 
-def _sentence(one: RecordingFit) -> str:
-    fit, levels = one.fit, one.levels
-    if not levels.slips:  # without stick the stiffness is unknown
-        return f"{one.measured.name}: mean torque {levels.mean:.3g} Nm, no slips"
-    return (
-        f"{one.measured.name}: elastomer {fit.bushing.elastomer_stiffness:.4g} Nm/rad, "
-        f"damping {fit.damping:.3g} Nm s/rad, breaks at {levels.critical:.3g} and slides at "
-        f"{levels.kinetic:.3g} Nm, {levels.slips} slips"
-    )
-
-
 def _assumed(
     beforehand: Beforehand, recordings: Sequence[RecordingFit]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    assumed, undetermined = [], []
+    assumed, undetermined = [_structure(beforehand)], []
     flexible = any(not one.fit.bushing.clamp_is_fixed for one in recordings)
     if "elastomer_damping_share" not in beforehand.stated and not flexible:
         assumed.append(
             "damping is split evenly between elastomer and beams, as the thesis does: with the "
             "clamp bolted down only the elastomer's can be told"
         )
-    assumed.append(_structure(beforehand))
     if not beforehand.inertias_stated:
         assumed.append(
             "no inertia is stated: a contact that gives way elastically counts as elastomer; state "
@@ -306,16 +288,14 @@ def _assumed(
         )
     if not flexible:
         undetermined.append("clamp inertia: all recordings were made with the clamp fixed")
-    slipping = {one.measured.condition.interference for one in recordings if one.levels.slips}
+    recorded, slipping = (
+        {one.measured.condition.interference for one in some}
+        for some in (recordings, [one for one in recordings if one.levels.slips])
+    )
     undetermined += [
         f"anything at {1e3 * interference:g} mm: nothing slips there; record slower rotation"
-        for interference in sorted(
-            {one.measured.condition.interference for one in recordings} - slipping
-        )
+        for interference in sorted(recorded - slipping)
     ]
-    steady = [one.measured.name for one in recordings if not one.levels.slips]
-    if steady:
-        undetermined.append(f"critical torque from {', '.join(steady)}: nothing slips there")
     return tuple(assumed), tuple(undetermined)
 
 
@@ -360,8 +340,8 @@ def read_again(recordings: Sequence[RecordingFit], fit: LawFit) -> list[Recordin
         own[id(subject.measured)] = model.bushing(numbers, subject), forecast
     again = []
     for one in recordings:
-        bushing, forecast = own.get(id(one.measured), (None, None))
-        if bushing is not None:
+        if id(one.measured) in own:
+            bushing, forecast = own[id(one.measured)]
             refitted = replace(one.fit, bushing=bushing)
             one = RecordingFit(one.measured, refitted, torque_levels(refitted), forecast)
         again.append(one)
@@ -409,18 +389,19 @@ def _number(name: str, unit: str, value: float, error: float, n: int, *at: float
 
 def _levels(recordings: Sequence[RecordingFit]) -> list[Number]:
     """Return the mean torque levels of the recordings by interference."""
+    slipping = [one for one in recordings if one.levels.slips]
+    places = sorted({one.measured.condition.interference for one in slipping})
     numbers = []
-    for name in ("critical_torque", "kinetic_torque"):
-        groups: dict[float, list[float]] = defaultdict(list)
-        for one in recordings:
-            if one.levels.slips:
-                level = getattr(one.levels, name.removesuffix("_torque"))
-                groups[one.measured.condition.interference].append(level)
-        for at, values in sorted(groups.items()):
-            # levels that change with speed make their mean no less certain
-            value, n = float(np.exp(np.mean(np.log(values)))), len(values)
-            error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
-            numbers.append(_number(name, UNITS[name], value, error, n, at))
+    for name, at in itertools.product(("critical_torque", "kinetic_torque"), places):
+        values = [
+            getattr(one.levels, name.removesuffix("_torque"))
+            for one in slipping
+            if one.measured.condition.interference == at
+        ]
+        # levels that change with speed make their mean no less certain
+        value, n = float(np.exp(np.mean(np.log(values)))), len(values)
+        error = math.hypot(_TORQUE_SCATTER / math.sqrt(n), _TORQUE_SHARED)
+        numbers.append(_number(name, UNITS[name], value, error, n, at))
     return numbers
 
 
@@ -437,12 +418,12 @@ def law_numbers(fit: LawFit, rig: Rig) -> list[Number]:
     model, spread = fit.model, np.sqrt(np.diag(fit.covariance))
     error = {group: float(spread[model.n_local + g]) for g, group in enumerate(model.groups)}
     numbers = []
+    kinetic_torque = LOCAL.index("kinetic_torque")
     for one in rig.fits:
-        g = model.groups.index((LOCAL.index("kinetic_torque"), one.interference))
-        n = int(np.sum(model.group_of[:, LOCAL.index("kinetic_torque")] == g))
-        kinetic, drop = (
-            error[LOCAL.index(name), one.interference] for name in ("kinetic_torque", "drop")
-        )
+        g = model.groups.index((kinetic_torque, one.interference))
+        n = int(np.sum(model.group_of[:, kinetic_torque] == g))
+        kinetic = error[kinetic_torque, one.interference]
+        drop = error[LOCAL.index("drop"), one.interference]
         critical = math.hypot(kinetic, (1.0 - one.kinetic_torque / one.critical_torque) * drop)
         for name, value, of in (
             ("law_kinetic_torque", one.kinetic_torque, kinetic),

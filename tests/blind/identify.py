@@ -225,7 +225,7 @@ def write_rig(made: Made, folder: Path) -> None:
     (folder / "known.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-IDENTIFY = "noise.identification.identify:identification_json"
+IDENTIFY = "tests.helpers.diagnosed:identification_json"
 """What ``bushing-noise identify`` calls."""
 
 

@@ -49,8 +49,7 @@ def test_a_wrong_bench_is_told(right, tmp_path, name):
     case = read_case([data], load_rig(rig))
     findings = (*bench_findings(case), *case.faults)
     assert findings
-    if "time" not in name:  # what is cut as a start was none
-        assert any(words in text for text in findings)
+    assert any(words in text for text in findings)
 
 
 @pytest.mark.parametrize("name", RIGHT)
@@ -138,18 +137,6 @@ def test_a_range_that_the_torque_reaches_is_told(right, tmp_path):
     assert read_case([data], load_rig(rig)).faults == (f"channel torque clips at {range_:.3g} N m",)
     data, rig = write_case(tmp_path / "whole", right[:3])
     assert read_case([data], load_rig(rig)).faults == ()
-
-
-def test_a_unit_is_told_though_the_torque_reads_otherwise_at_each_condition(right):
-    """The torque's own fault is none of the acceleration's: what both outputs share says so."""
-    case = []
-    for one, gain in zip(right, (0.6, 1.0, 0.5, 0.8, 1.5), strict=True):
-        scales = {"torque": gain, "acceleration": 1.0 / 9.80665}
-        factors = [scales.get(name, 1.0) for name in one.channel_names]
-        case.append(replace(one, samples=np.array(factors)[:, None] * one.samples))
-    assert bench_findings(_case(case)) == (
-        "channel acceleration looks like g, not m/s^2 (factor 9.8)",
-    )
 
 
 @pytest.mark.parametrize("other", ["angle", "acceleration"])

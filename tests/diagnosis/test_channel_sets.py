@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from noise.diagnosis.causes.verdict import unseen_causes
+from noise.diagnosis.causes.advice import unseen_causes
 from noise.diagnosis.diagnose import diagnose
 from tests.helpers.small_rigs import at, only, run, write_case
 

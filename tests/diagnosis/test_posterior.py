@@ -10,14 +10,13 @@ import pytest
 from hypothesis import given, strategies as st
 
 from models.errors import ParameterError
+from noise.diagnosis.causes.advice import equivalent_pairs, next_measurement
 from noise.diagnosis.causes.posterior import CAUSES, load_posterior
 from noise.diagnosis.causes.verdict import (
-    equivalent_pairs,
     joint_probabilities,
     likeliest,
     marginals,
     needs_explaining,
-    next_measurement,
 )
 from noise.diagnosis.gap import Gap
 from noise.training.causes.cases.draw import Truth

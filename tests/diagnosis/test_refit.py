@@ -71,7 +71,7 @@ def test_recordings_of_several_rates_are_each_simulated_at_their_own():
         [run(at(1.0)), run(at(1.0), rate=48e3, seed=1), run(at(1.0), seconds=0.6)]
     )
     for template in comparison.recordings:
-        made = comparison.simulated(Model(), template, 0)
+        made = comparison.runs.simulated(Model(), template, 0)
         assert made.samples.shape == template.samples.shape
         assert made.rate == template.rate
     assert np.isfinite(comparison.squared(Model(), range(3))).all()

@@ -52,7 +52,6 @@ def test_repeats_are_filtered_as_recordings_are():
     plain = nominal(sensed(**dict.fromkeys(kinds, silent)))
     corner = replace(silent, antialias=1500.0)
     low = nominal(sensed(torque=silent, acceleration=corner, pressure=corner, angle=silent))
-    assert np.array_equal(low["torque"], plain["torque"])
     frequency = np.fft.rfftfreq(plain.samples.shape[1], 1.0 / RATE)
     window = np.hanning(plain.samples.shape[1])
     for kind in ("acceleration", "pressure"):

@@ -370,22 +370,15 @@ def _clear(fit: PathFit) -> bool:
 def _unit_of_path(kind: str, levels: Sequence[Levels], scale: float) -> tuple[str, float]:
     """Return the wrong unit of a channel and its factor [-]; empty and 1 if there is none."""
     having = [(one, p) for one in levels if (p := one.paths.get((kind, kind)))]
-    least = min(2, len(having))
-    clear = {k: {i: f.gain for i, one in enumerate(levels)
-                 if (f := one.paths.get((k, k))) and _clear(f)}
-             for k in OUTPUTS}  # fmt: skip
-    own = clear[kind]
-    gains = [scale * np.array(list(own.values()))]
-    (beside,) = (clear[k] for k in OUTPUTS if k != kind)
-    both = [i for i in own if i in beside]
-    if both and abs(math.log(scale * float(np.median([beside[i] for i in both])))) < math.log(3.0):
-        gains.append(np.array([own[i] / beside[i] for i in both]))  # independent of the torque
-    series = [(each, least, _EXACT, *_STEADY) for each in gains]
+    least = max(min(2, len(having)), 1)
+    gains = scale * np.array([fit.gain for _, fit in having if _clear(fit)])
     swinging = [fit.strength for one, fit in having if one.swing > _SWINGING_WELL * scale]
     strengths = scale * np.maximum(swinging, 1e-12)
-    series.append((strengths, least + (len(having) > 2), *_STRENGTH))
-    for each, fewest, exact, steady, share in series:
-        if each.size >= max(fewest, 1):
+    for each, fewest, exact, steady, share in (
+        (gains, least, _EXACT, *_STEADY),
+        (strengths, least + (len(having) > 2), *_STRENGTH),
+    ):
+        if each.size >= fewest:
             factor = float(np.median(each))
             is_steady = np.mean(np.abs(np.log(each / factor)) < steady) >= share
             if is_steady and (unit := unit_of(kind, factor, exact)):

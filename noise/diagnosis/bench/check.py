@@ -8,8 +8,7 @@ material is reported if a shipped one predicts mean, swing and frequency of the 
 recording and the rig file does not.
 
 If the contact slides smoothly, the torque does not excite acceleration and sound, and their units
-are not checked. The stated conditions (speed, its sign, order of the recordings) are compared with
-torque and angle.
+are not checked. The stated speed and its sign are compared with the angle.
 """
 
 from __future__ import annotations
@@ -19,9 +18,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from models.condition import known_condition
 from models.errors import BushingNoiseError, ParameterError
 from models.recording import Recording
 from models.rig import Rig
@@ -51,18 +48,6 @@ and fluctuations average out [-]; assumed."""
 
 _STILL = 0.05
 """Share of the stated speed below which the angle counts as constant [-]; assumed."""
-
-_CONDITION_ERRORS = {"speed": 0.05, "torque": 0.2}
-"""Standard errors of the logarithms of a recording's speed and torque against its condition [-];
-assumed."""
-
-_SHUFFLED = 3.0
-"""Mean error, in standard errors, above which conditions do not fit their recordings [-];
-assumed."""
-
-_SORTED = 1.0
-"""Mean error, in standard errors, below which another order of conditions fits [-]; assumed."""
-
 
 LEAST_RATE = 8e3
 """Least sampling rate [Hz], which covers the cycle's harmonics up to 3 kHz; assumed."""
@@ -135,32 +120,6 @@ def speed_words(ratio: float, stated: float) -> str:
     if ratio < _STILL:
         return f"channel angle does not turn as stated: {turns}"
     return f"the stated speed is {factor_words(1.0 / ratio)}: the angle turns at {turns}"
-
-
-def shuffled_conditions(case: Case, levels: Sequence[Levels]) -> str:
-    """Return a finding if conditions are swapped between recordings; otherwise empty."""
-    recorded: list[tuple[float, float]] = []
-    stated: list[tuple[float, float]] = []
-    for one, recording in zip(levels, case.recordings, strict=True):
-        if one.turned is None or one.torque is None or not one.turned or not one.torque:
-            return ""
-        interference = known_condition(recording.condition).interference
-        kinetic = case.rig.fit(interference).kinetic_torque
-        stated.append((np.log(abs(one.speed)), np.log(kinetic)))
-        recorded.append((np.log(abs(one.turned)), np.log(abs(one.torque) * kinetic)))
-    x, y = np.array(recorded), np.array(stated)
-    x = x - np.median(x - y, axis=0)  # removes a common factor from a wrong unit or gain
-    size = np.array(list(_CONDITION_ERRORS.values()))
-    cost = (np.minimum(np.abs(x[:, None, :] - y[None, :, :]) / size, 20.0)).sum(axis=2)
-    rows, columns = linear_sum_assignment(cost)
-    before, after = float(np.trace(cost)) / len(x), float(cost[rows, columns].mean())
-    if before < _SHUFFLED or after > _SORTED:
-        return ""
-    moved = [case.names[i] for i, j in zip(rows, columns, strict=True) if cost[i, i] > cost[i, j]]
-    return (
-        f"conditions look shuffled among the recordings: speed and torque of {', '.join(moved)} "
-        "are those stated of others"
-    )
 
 
 _LEAST = 0.58
@@ -282,8 +241,8 @@ def bench_findings(case: Case, library: Mapping[str, Effect] | None = None) -> t
         return case.unusable
     cache = TransferFunctionCache(case.rig, library)
     levels = [levels_of(recording, case.rig, cache) for recording in case.recordings]
-    if first := swapped_outputs(levels) or shuffled_conditions(case, levels):
-        return (first,)
+    if swapped := swapped_outputs(levels):
+        return (swapped,)
     each = (*turned_channels(levels), *wrong_units(levels), wrong_speed(levels))
     if findings := tuple(filter(None, each)):
         return findings

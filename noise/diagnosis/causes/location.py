@@ -20,20 +20,16 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from noise.base.model_file import ModelKind, load_model, save_model
 from noise.diagnosis.evidence.channel_summary import BAND_EDGES
-from noise.diagnosis.evidence.summary import deviations, standard_errors
+from noise.diagnosis.evidence.summary import CaseTable, deviations, standard_errors
 from noise.diagnosis.outcome import LARGEST_GAP, SURE, Location, StageFinding
 from sim.effects.effect import Stage
-
-if TYPE_CHECKING:
-    from noise.diagnosis.evidence.summary import CaseTable
-
 
 STAGES = tuple(stage.value for stage in Stage)
 """In the order of the chain."""
@@ -303,19 +299,18 @@ def locate(table: CaseTable, nulls: StageNulls, stage: str | None = None) -> Loc
     inside = np.array([stage_of(name) == stage for name in names])
     if not inside.any():
         inside[:] = True
-    sizes = np.nan_to_num(nulls.surprises(table))
-    size = np.where(inside, sizes, -1.0)
+    size = np.where(inside, np.nan_to_num(nulls.surprises(table)), -1.0)
     strongest = np.argsort(size)[::-1][:12]
     strongest = strongest[size[strongest] >= 0.5 * size[strongest[0]]]
-    top = names[int(strongest[0])]
-    channels = {_channel(names[int(i)]) for i in strongest}
-    bands = [band for i in strongest if (band := _band(names[int(i)])) is not None]
+    shown = [names[int(i)] for i in strongest]
+    channels = set(map(_channel, shown))
+    bands = [band for name in shown if (band := _band(name)) is not None]
     low, high = (min(b[0] for b in bands), max(b[1] for b in bands)) if bands else _WHOLE_BAND
     return Location(
         stage=stage,
         channels=tuple(c for c in ("torque", "acceleration", "pressure", "angle") if c in channels),
         band=(low, high),
-        phase=_phase(top),
+        phase=_phase(shown[0]),
         conditions=_conditions(table, nulls, strongest),
         p_value=findings[stage].p_value,
     )
@@ -336,25 +331,22 @@ def differences(table: CaseTable, nulls: StageNulls) -> tuple[Location, ...]:
         largest surprise among the largest ones that whole stages have without a cause, so it is
         corrected for all looks.
     """
-    names = nulls.names
     size = nulls.surprises(table)
     places: dict[tuple[str, str, tuple[float, float] | None, str], list[int]] = {}
-    for i, name in enumerate(names):
+    for i, name in enumerate(nulls.names):
         if np.isfinite(size[i]):
             key = (stage_of(name), _channel(name), _band(name), _phase(name))
             places.setdefault(key, []).append(i)
-    places_by_p = []
+    by_surprise = []
     for (stage, channel, band, phase), numbers in places.items():
         largest = np.array(numbers)[np.argsort(-size[numbers])][:3]
         most = float(size[largest[0]])
-        null = nulls.largest[:, STAGES.index(stage)]
-        place = Location(
-            stage, (channel,), band or _WHOLE_BAND, phase, _conditions(table, nulls, largest),
-            _p_value(most, null),
-        )  # fmt: skip
-        if place.p_value <= SURE:
-            places_by_p.append((place.p_value, -most, place))
-    return tuple(place for _, _, place in sorted(places_by_p, key=lambda entry: entry[:2]))
+        p_value = _p_value(most, nulls.largest[:, STAGES.index(stage)])
+        if p_value <= SURE:
+            conditions = _conditions(table, nulls, largest)
+            place = Location(stage, (channel,), band or _WHOLE_BAND, phase, conditions, p_value)
+            by_surprise.append((p_value, -most, place))
+    return tuple(place for *_, place in sorted(by_surprise, key=lambda entry: entry[:2]))
 
 
 def _p_value(size: float, null: NDArray[np.float64]) -> float:
@@ -402,13 +394,9 @@ def _conditions(table: CaseTable, nulls: StageNulls, strongest: NDArray[np.int64
         warnings.simplefilter("ignore", RuntimeWarning)
         size = np.nanmean(z, axis=1)
     middle = float(np.median(speed))
-    fast, slow = size[speed >= middle].mean(), size[speed < middle]
-    if not slow.size or not np.isfinite(fast):
+    fast, slow = size[speed >= middle].mean(), size[speed < middle].mean()
+    if not max(fast, slow) > 2.0 * min(fast, slow):  # nor where one of them is unknown
         return "all"
-    ways = ((">=", "<"), ("<=", ">"))[int(np.all(turned <= 0.0))]
-    limit = -middle if np.all(turned <= 0.0) else middle
-    if fast > 2.0 * slow.mean():
-        return f"speed_rad_s {ways[0]} {limit:g}"
-    if slow.mean() > 2.0 * fast:
-        return f"speed_rad_s {ways[1]} {limit:g}"
-    return "all"
+    backwards = bool(np.all(turned <= 0.0))
+    up, down = ("<=", ">") if backwards else (">=", "<")
+    return f"speed_rad_s {up if fast > slow else down} {-middle if backwards else middle:g}"

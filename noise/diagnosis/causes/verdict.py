@@ -1,8 +1,4 @@
-"""Verdict of a diagnosis: causes named, causes that cannot be told apart, what to measure next.
-
-Causes that the recorded channels cannot show, whatever stands in those that were recorded.
-
-Hypotheses from causes taken one by one, and causes from hypotheses.
+"""Verdict of a diagnosis: hypotheses from causes taken one by one, and causes from hypotheses.
 
 A hypothesis is the set of causes that are at work: none, ``parameters`` or ``unknown`` by itself,
 or up to three effects.
@@ -10,18 +6,12 @@ or up to three effects.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Container, Mapping
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.effects import EFFECTS
-from sim.effects.effect import Stage
-
-if TYPE_CHECKING:
-    from noise.diagnosis.gap import Gap
-
+from noise.diagnosis.gap import Gap
 
 Hypothesis = frozenset[str]
 
@@ -126,77 +116,6 @@ def marginals(joint: Mapping[Hypothesis, float]) -> dict[str, float]:
     return single
 
 
-_SHOWN_BY = {
-    Stage.STRUCTURE: {"acceleration", "pressure"},
-    Stage.RADIATION: {"pressure"},
-}
-"""Channels of which one is needed; all others show the other stages."""
-
-
-def unseen_causes(kinds: Collection[str]) -> frozenset[str]:
-    """Return the effects that none of the recorded channels can show.
-
-    Parameters
-    ----------
-    kinds : collection of str
-        Of the channels that were recorded.
-
-    Returns
-    -------
-    frozenset of str
-
-    Examples
-    --------
-    >>> sorted(unseen_causes({"torque", "acceleration"}))
-    ['plate_modes', 'room_reflections']
-    >>> unseen_causes({"torque", "acceleration", "pressure"})
-    frozenset()
-    """
-    return frozenset(
-        name
-        for name, effect in EFFECTS.items()
-        if (needed := _SHOWN_BY.get(effect.stage)) is not None and not needed & set(kinds)
-    )
-
-
-def channel_costs(kinds: Collection[str]) -> list[str]:
-    """Return one line for each consequence of channels that were not recorded.
-
-    Parameters
-    ----------
-    kinds : collection of str
-        Of the channels that were recorded.
-
-    Examples
-    --------
-    >>> channel_costs({"torque", "pressure", "angle"})
-    ['no acceleration: structure and radiation cannot be told apart']
-    """
-    missing = {"torque", "acceleration", "pressure", "angle"} - set(kinds)
-    lines = []
-    if "torque" in missing:
-        recorded = " and ".join(
-            word for kind, word in (("acceleration", "acceleration"), ("pressure", "sound"))
-            if kind not in missing
-        )  # fmt: skip
-        lines.append(
-            f"no torque: drive, contact and structure cannot be told apart by {recorded} alone"
-        )
-    unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
-    if {"acceleration", "pressure"} <= missing:
-        lines.append(f"no acceleration and no sound: {unseen} cannot be assessed")
-    elif "acceleration" in missing:
-        lines.append("no acceleration: structure and radiation cannot be told apart")
-    elif "pressure" in missing:
-        lines.append(f"no sound: {unseen} cannot be assessed")
-    if "angle" in missing:
-        lines.append(
-            "no shaft angle: the shaft is taken to turn evenly at the speed that was set, and an "
-            "uneven drive is told by what else it changes"
-        )
-    return lines
-
-
 ALONE: tuple[Hypothesis, ...] = (frozenset({"parameters"}), frozenset({"unknown"}))
 """Hypotheses of a cause that no effect is named beside."""
 
@@ -235,7 +154,7 @@ def needs_explaining(
     >>> needs_explaining(0.01, 0.05, chance=0.3)
     False
     """
-    if gap is not None and _is_beyond(gap):
+    if gap is not None and gap.distance >= BEYOND and gap.p_value <= RARE:
         return True
     return none < alarm and (chance is None or chance <= UNUSUAL)
 
@@ -280,163 +199,3 @@ def likeliest(
         return tuple(apart or ())
     named = [name for name in best if single[name] >= NAMED]
     return tuple(sorted(named, key=lambda name: (-single[name], name))) or ("unknown",)
-
-
-def _is_beyond(gap: Gap) -> bool:
-    return gap.distance >= BEYOND and gap.p_value <= RARE
-
-
-_ALIKE = 0.2
-"""Two causes are declared alike if both are at least so probable and neither stands out; assumed,
-as is the next."""
-
-_FACTOR = 2.5
-"""The likelier of them stands out from so many times the other's probability on [-]."""
-
-_PAIRS: Mapping[frozenset[str], str] = {
-    frozenset({"frictional_heating", "velocity_weakening"}): (
-        "run one condition for a minute from cold: heating drifts with time, weakening does not"
-    ),
-    frozenset({"amplitude_softening", "viscoelastic_stiffness"}): (
-        "oscillate the shaft in stick at two amplitudes and two frequencies"
-    ),
-    frozenset({"beam_modes", "plate_modes"}): (
-        "a second accelerometer on the plate: does the band ring there or on the beams"
-    ),
-    frozenset({"plate_modes", "room_reflections"}): (
-        "the same run with the microphone at half the distance: the room's share falls"
-    ),
-    frozenset({"critical_torque_scatter", "static_ageing"}): (
-        "stop the shaft for 0.1, 1 and 10 s and turn on: ageing grows with the stop"
-    ),
-    frozenset({"partial_slip", "shaft_compliance"}): (
-        "an angle sensor at the bushing's end of the shaft"
-    ),
-    frozenset({"gain_error", "parameters"}): "a known weight on the torque arm",
-}
-
-_MISSING = {
-    "torque": "the torque between bushing and clamp",
-    "acceleration": "an acceleration on the beams",
-    "pressure": "the sound, with a calibrated microphone",
-    "angle": "the angle of the shaft",
-}
-
-_WITHOUT_TORQUE = (
-    ("critical_torque_scatter", "static_ageing"),
-    ("partial_slip", "static_ageing"),
-    ("frictional_heating", "velocity_weakening"),
-    ("amplitude_softening", "viscoelastic_stiffness"),
-)
-
-
-def equivalent_pairs(
-    ranked: Sequence[str], probabilities: Mapping[str, float], kinds: Collection[str]
-) -> tuple[tuple[str, str], ...]:
-    """Return the pairs of effects that this case cannot separate.
-
-    Parameters
-    ----------
-    ranked : sequence of str
-        Effects, the most probable first.
-    probabilities : mapping of str to float
-        [-]
-    kinds : collection of str
-        Of the channels that were recorded.
-
-    Examples
-    --------
-    >>> p = {"velocity_weakening": 0.4, "frictional_heating": 0.3, "clipping": 0.1}
-    >>> equivalent_pairs(list(p), p, {"torque"})
-    (('frictional_heating', 'velocity_weakening'),)
-    """
-    pairs = []
-    for i, one in enumerate(ranked[:4]):
-        for other in ranked[i + 1 : 4]:
-            high, low = probabilities[one], probabilities[other]
-            if low >= _ALIKE and high < _FACTOR * low and high + low < 1.3:
-                pairs.append((min(one, other), max(one, other)))
-    if "torque" not in kinds:
-        pairs += [pair for pair in _WITHOUT_TORQUE if ranked[0] in pair]
-    return tuple(dict.fromkeys(pairs))
-
-
-_WHERE_UNKNOWN = {
-    "drive": "the angle at both ends of the shaft, and a run with the bushing taken out",
-    "friction": (
-        "the same condition at three speeds and two fits, twice each: what grows with speed, "
-        "torque or time tells an effect that no library has"
-    ),
-    "structure": (
-        "hammer hits on clamp and beams, and a second accelerometer beside the first: what rings "
-        "there tells an effect that no library has"
-    ),
-    "radiation": (
-        "the same run with the microphone at half the distance, and with the plate damped: what "
-        "changes tells an effect that no library has"
-    ),
-    "measurement": (
-        "a run with the shaft at rest, and one with another sensor in the place of each: what "
-        "stays tells an effect that no library has"
-    ),
-}
-"""What tells more of a difference that nothing known closes, by stage."""
-
-
-def next_measurement(
-    verdict: Sequence[str],
-    probabilities: Mapping[str, float],
-    kinds: Collection[str],
-    stage: str = "friction",
-    *,
-    differs: bool = False,
-    farthest: str = "",
-    own_fit: bool = True,
-) -> str:
-    """Return the next measurement that would reduce the uncertainty most; empty if none would.
-
-    Parameters
-    ----------
-    verdict : sequence of str
-    probabilities : mapping of str to float
-        [-]
-    kinds : collection of str
-        Of the channels that were recorded.
-    stage : str
-        That differs most.
-    differs : bool
-        Whether the gap is larger than that of repeats.
-    farthest : str
-        Recording that deviates most, if by more than repeats do.
-    own_fit : bool
-        Whether the rig file states the bushing that was recorded, rather than a shipped one.
-
-    Examples
-    --------
-    >>> next_measurement(("clipping",), {"clipping": 0.99, "none": 0.0}, {"pressure"})
-    'record the torque between bushing and clamp beside what there is'
-    """
-    if not verdict:
-        if differs:
-            return "each condition once more: what its two recordings share is no chance"
-        if farthest:
-            return f"the condition of {farthest} once more, to see whether its deviation is chance"
-        return ""
-    if verdict == ("parameters",) and not own_fit:
-        return (
-            "nothing yet: the rig file has no [[fit]] of its own. Let bushing-noise identify make "
-            "a rig file of these recordings, and diagnose them with that one"
-        )
-    for kind, what in _MISSING.items():
-        if kind not in kinds:
-            return f"record {what} beside what there is"
-    ranked = sorted((n for n in probabilities if n != "none"), key=lambda n: -probabilities[n])
-    for other in ranked[1:4]:
-        advice = _PAIRS.get(frozenset({ranked[0], other}))
-        if advice is not None and probabilities[other] > 0.5 * _ALIKE:
-            return advice
-    if verdict == ("unknown",):
-        return _WHERE_UNKNOWN[stage]
-    if probabilities[ranked[0]] < 0.9:
-        return "two more speeds, one below and one above those recorded, each twice"
-    return "one condition outside those recorded, to confirm that the effect predicts it"

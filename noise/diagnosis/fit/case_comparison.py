@@ -12,15 +12,15 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
-from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig
+from noise.base.arrays import Array
 from noise.diagnosis.evidence.reconstruction import closed_spectrum
 from noise.diagnosis.evidence.summary import (
     CaseTable,
@@ -42,8 +42,6 @@ from noise.diagnosis.simulated.model_runs import (
 from noise.diagnosis.simulated.repeats import Scatter, condition_key
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect
-
-T = TypeVar("T")
 
 N_REPEATS = 12
 """Simulated repeats that tell what repeats differ by; what a diagnosis may cost settles it;
@@ -76,7 +74,6 @@ _BY_CHANCE = (
 )  # fmt: skip
 
 
-@dataclass(eq=False)
 class CaseComparison:
     """Recordings of a case with the simulations of their rig.
 
@@ -91,40 +88,33 @@ class CaseComparison:
         Numbers that `residuals` has.
     scale : ndarray, shape (n_names,)
         Their scatter without a cause [unit of the number].
-    forms : dict of (str, str) to Effect
-        Further forms of effects, by the name of the effect and their own.
-    about : Model
-        Whose repeats tell the floor; by default those of the rig as its file has it.
     """
 
-    rig: Rig
-    recordings: tuple[Recording, ...]
-    library: Mapping[str, Effect]
-    table: CaseTable
-    names: tuple[str, ...]
-    scale: NDArray[np.float64]
-    forms: dict[tuple[str, str], Effect] = field(default_factory=dict)
-    about: Model = field(default_factory=Model)
-    signatures: list[NDArray[np.float64]] = field(init=False)
-    references: list[Reference] = field(init=False)
-    runs: ModelRuns = field(init=False)
-    _threads: int = field(init=False)
-    _briefly: list[Recording] = field(init=False)
-    _seeds: dict[tuple[float, ...], list[int]] = field(init=False)
-    _signed: dict[tuple[object, ...], NDArray[np.float64]] = field(init=False)
-    _numbers: dict[tuple[object, ...], NDArray[np.float64]] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._signed, self._numbers = {}, {}
-        self.runs = ModelRuns(self.rig, self.library, self.forms)
-        self._threads = os.cpu_count() or 1
-        self._briefly = [_brief(recording) for recording in self.recordings]
-        keys = dict.fromkeys(map(condition_key, self.recordings))
+    def __init__(
+        self,
+        rig: Rig,
+        recordings: tuple[Recording, ...],
+        library: Mapping[str, Effect],
+        table: CaseTable,
+        names: tuple[str, ...],
+        scale: Array,
+    ) -> None:
+        self.rig, self.recordings, self.library = rig, recordings, library
+        self.table, self.names, self.scale = table, names, scale
+        # Forms of effects beside the library's, by the name of the effect and their own.
+        self.forms: dict[tuple[str, str], Effect] = {}
+        self.runs = ModelRuns(rig, library, self.forms)
+        self._signed: dict[tuple[object, ...], Array] = {}
+        self._repeated: dict[tuple[object, ...], list[Array]] = {}
+        self._numbers: dict[tuple[object, ...], Array] = {}
+        self._briefly = [_brief(recording) for recording in recordings]
         self._seeds = {
             key: np.random.SeedSequence([_SEED, place]).generate_state(N_REPEATS).tolist()
-            for place, key in enumerate(keys)
+            for place, key in enumerate(dict.fromkeys(map(condition_key, recordings)))
         }
-        self.signatures = [signature(recording) for recording in self.recordings]
+        self.signatures = [signature(recording) for recording in recordings]
+        # Whose repeats tell the floor: the rig as its file has it.
+        self.about = Model()
         self.references = self._references()
 
     def _references(self) -> list[Reference]:
@@ -157,10 +147,6 @@ class CaseComparison:
         other.references = other._references()
         return other
 
-    def simulated(self, model: Model, template: Recording, seed: int) -> Recording:
-        """Simulate a repeat by a model, at the condition, rate and length of a recording."""
-        return self.runs.simulated(model, template, seed)
-
     def table_beside(self, model: Model) -> CaseTable:
         """Return the numbers of the recordings beside those of repeats of a model.
 
@@ -181,7 +167,7 @@ class CaseComparison:
         """Return whether a rig file can state an effect as fitted."""
         return (spec.name, str(spec.parameters.get("form"))) not in self.forms
 
-    def deviations(self, model: Model, chosen: Sequence[int]) -> list[NDArray[np.float64]]:
+    def deviations(self, model: Model, chosen: Sequence[int]) -> list[Array]:
         """Return deviations of recordings from a model, in standard deviations of repeats.
 
         Where the model's own repeats differ by more than those of the rig file, as with an effect
@@ -209,7 +195,7 @@ class CaseComparison:
             deviations.append((self.signatures[i] - repeats.mean(axis=0)) / scale)
         return deviations
 
-    def squared(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
+    def squared(self, model: Model, chosen: Sequence[int]) -> Array:
         """Return the squared distance of recordings from a model; 1 is the floor.
 
         Parameters
@@ -222,18 +208,17 @@ class CaseComparison:
         ndarray, shape (n_chosen,)
             In squared floors [-]; infinite where the model cannot be simulated.
         """
-        return np.array([self._squared(model, i) for i in chosen])
 
-    def _squared(self, model: Model, place: int) -> float:
-        try:
-            (deviation,) = self.deviations(model, [place])
-        except ParameterError:
-            return math.inf
-        return self.references[place].squared(deviation)
+        def squared(i: int) -> float:
+            try:
+                (deviation,) = self.deviations(model, [i])
+            except ParameterError:
+                return math.inf
+            return self.references[i].squared(deviation)
 
-    def misfits(
-        self, model: Model, chosen: Sequence[int], *, single_run: bool = False
-    ) -> NDArray[np.float64]:
+        return np.array([squared(i) for i in chosen])
+
+    def misfits(self, model: Model, chosen: Sequence[int], *, single_run: bool = False) -> Array:
         """Return the distance of recordings from runs of a model without scatter.
 
         Such runs lie a little off the middle of the scattered ones; by how much the rig file's do
@@ -261,14 +246,14 @@ class CaseComparison:
         except ParameterError:
             return np.full(len(chosen), np.inf)
 
-    def _each(self, make: Callable[[int], T], given: Sequence[int]) -> list[T]:
+    def _each(self, make: Callable[[int], Any], given: Sequence[int]) -> list[Any]:
         """Map a function over a sequence with several threads."""
-        if self._threads < 2 or len(given) < 2:
+        if len(given) < 2:
             return [make(one) for one in given]
-        with ThreadPoolExecutor(self._threads) as pool:
+        with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             return list(pool.map(make, given))
 
-    def _away(self, model: Model, place: int, *, single_run: bool) -> NDArray[np.float64]:
+    def _away(self, model: Model, place: int, *, single_run: bool) -> Array:
         reference = self.references[place]
         names = [spec.name for spec in model.effects]
         briefly = not any(name in _SLOW or name not in EFFECTS for name in names)
@@ -276,12 +261,9 @@ class CaseComparison:
         plain = self._middle(self.about, template, single_run=True)
         middle = self._middle(model, template, single_run=single_run)
         off = np.clip(reference.mean - plain, -reference.scale, reference.scale)
-        away: NDArray[np.float64] = (self.signatures[place] - middle - off) / reference.scale
-        return away
+        return np.asarray((self.signatures[place] - middle - off) / reference.scale)
 
-    def _middle(
-        self, model: Model, template: Recording, *, single_run: bool
-    ) -> NDArray[np.float64]:
+    def _middle(self, model: Model, template: Recording, *, single_run: bool) -> Array:
         """Return the signature of a model without scatter."""
         by_chance = any(spec.name in _BY_CHANCE for spec in model.effects)
         seeds = _SEEDS if by_chance and not single_run else _SEEDS[:1]
@@ -292,7 +274,7 @@ class CaseComparison:
             )
         return self._signed[key]
 
-    def residuals(self, model: Model, chosen: Sequence[int]) -> NDArray[np.float64]:
+    def residuals(self, model: Model, chosen: Sequence[int]) -> Array:
         """Return differences of recordings and a model in their path from torque to outputs.
 
         Returns
@@ -313,7 +295,7 @@ class CaseComparison:
             rows.append(np.tanh(np.nan_to_num(z)[np.isfinite(self._numbers[key])] / _SATURATION))
         return np.array(rows)
 
-    def _path_numbers(self, model: Model, template: Recording) -> NDArray[np.float64]:
+    def _path_numbers(self, model: Model, template: Recording) -> Array:
         run = self.runs.simulated(model, template, 0, Scatter(0.0, 0.0, 0.0, 0.0))
         signal, rate, numbers = signals_of(same_channels(run, template)), run.rate, {}
         if "torque" in signal:
@@ -322,16 +304,15 @@ class CaseComparison:
             numbers = path_numbers(signal, spectrum, rate, transfer_functions, np.empty(0))[0]
         return np.array([numbers.get(name, math.nan) for name in self.names])
 
-    def _repeats(self, model: Model, template: Recording, n: int) -> NDArray[np.float64]:
+    def _repeats(self, model: Model, template: Recording, n: int) -> Array:
         """Return signatures of the first scattered repeats of a model, shape (n, n_values)."""
-        key = (repr(model), condition_key(template), "repeats")
-        known = self._signed.get(key)
-        if known is None or len(known) < n:
-            seeds = self._seeds[condition_key(template)][0 if known is None else len(known) : n]
-            more = self._each(lambda seed: signature(self.simulated(model, template, seed)), seeds)
-            known = np.array(more if known is None else [*known, *more])
-            self._signed[key] = known
-        return known[:n]
+        known = self._repeated.setdefault((repr(model), condition_key(template)), [])
+
+        def repeat(seed: int) -> Array:
+            return signature(self.runs.simulated(model, template, seed))
+
+        known += self._each(repeat, self._seeds[condition_key(template)][len(known) : n])
+        return np.array(known[:n])
 
 
 def _brief(recording: Recording) -> Recording:

@@ -14,13 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from models.rig import LawSpec
+from noise.diagnosis.case import Case
+from noise.diagnosis.causes.posterior import Posterior
 from noise.diagnosis.causes.verdict import ALONE, Hypothesis, likeliest, marginals, normalised
 from noise.diagnosis.first_answer import FirstAnswer, known_effects
 from noise.diagnosis.fit.case_comparison import CaseComparison
@@ -30,10 +31,6 @@ from noise.diagnosis.simulated.model_runs import Model
 from noise.diagnosis.words import joined
 from sim.effects import EFFECTS, irregular_effects
 from sim.effects.effect import Effect
-
-if TYPE_CHECKING:
-    from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.posterior import Posterior
 
 _UNSEEN = 0.1
 """Probability before any fit of an effect that the posterior knows nothing of [-]; assumed."""

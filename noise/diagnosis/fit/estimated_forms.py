@@ -13,7 +13,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +23,15 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
 from models.condition import known_condition
+from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.simulated.transfer_functions import predict
 from sim.chain import padded_sum
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Values
 from sim.parameters import Parameter
-
-if TYPE_CHECKING:
-    from models.radiation.impulse_responses import ImpulseResponses
-    from noise.diagnosis.fit.case_comparison import CaseComparison
 
 ESTIMATED = "beam_modes"
 """The effect of which forms are estimated."""

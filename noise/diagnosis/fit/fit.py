@@ -505,7 +505,7 @@ def _added(
     ]
     cost, best = min(refined, key=itemgetter(0))
     if not math.isfinite(cost):
-        comparison.simulated(best, comparison.recordings[few[0]], 0)  # says why
+        comparison.runs.simulated(best, comparison.recordings[few[0]], 0)  # says why
         raise ParameterError("it breaks down in some of the recordings, in all forms tried")
     return best
 

@@ -11,10 +11,9 @@ both. Of what no file can state the fit is repeated in the simulator's own forms
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,18 +22,15 @@ from models.errors import ParameterError
 from models.recording import Recording
 from models.rig import LawSpec, Rig, parse_spec
 from noise.base import SURE_90
+from noise.diagnosis.case import Case
+from noise.diagnosis.causes.posterior import Posterior
 from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
+from noise.diagnosis.fit.decide import CaseFits, HypothesisFit, Judged
 from noise.diagnosis.fit.fit import Fitted, fit_closer, fit_effects
-from noise.diagnosis.outcome import EffectFinding, Illustration, Improvement
+from noise.diagnosis.outcome import Diagnosis, EffectFinding, Illustration, Improvement
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns, with_effects
-
-if TYPE_CHECKING:
-    from noise.diagnosis.case import Case
-    from noise.diagnosis.causes.posterior import Posterior
-    from noise.diagnosis.fit.decide import CaseFits, HypothesisFit, Judged
-    from noise.diagnosis.outcome import Diagnosis
 
 Simulated = Callable[[Recording], Recording]
 
@@ -45,7 +41,7 @@ _DRAWN = 2
 _SEED = 7
 
 
-def simulated_by(runs: ModelRuns | CaseComparison, model: Model | None = None) -> Simulated:
+def simulated_by(runs: ModelRuns, model: Model | None = None) -> Simulated:
     """Return a function that simulates a recording by a model, by default the rig file."""
     return lambda recording: runs.simulated(model or Model(), recording, _SEED)
 
@@ -96,13 +92,11 @@ def add_fits(
         Told what is being done.
     """
     comparison, held = judged.comparison, judged.held
-    nominal = simulated_by(comparison)
-    findings = _findings(judged, seed)
-    diagnosis = replace(
-        diagnosis,
-        effects=_ranked(diagnosis, findings),
-        held_out=tuple(case.names[i] for i in held),
-    )
+    nominal = simulated_by(comparison.runs)
+    findings = {effect.name: effect for effect in diagnosis.effects} | _findings(judged, seed)
+    ranked = sorted(findings.values(), key=lambda effect: -effect.probability)
+    held_out = tuple(case.names[i] for i in held)
+    diagnosis = replace(diagnosis, effects=tuple(ranked), held_out=held_out)
     fits = judged.fits
     if not judged.verdict or fits is None:
         return replace(diagnosis, illustrations=illustrations_of(case, held, nominal))
@@ -118,12 +112,17 @@ def add_fits(
         fits.alone.model if fit is None else None,
         None if offered is None else offered.fitted.model, posterior, seed,
     )  # fmt: skip
-    shown = simulated_by(comparison, best.model)
+    shown = simulated_by(comparison.runs, best.model)
     if improvement is not None:  # the very rig that is offered
         shown = simulated_by(ModelRuns(improvement.rig, comparison.library, {}))
+    offsets = zip(OFFSETS, best.model.offsets, strict=True)
+    spreads = ((name, x, best.spread[name]) for name, x in offsets)
     return replace(
         diagnosis,
-        parameters=_intervals(best),
+        parameters={
+            name: (math.exp(x - SURE_90 * spread), math.exp(x + SURE_90 * spread))
+            for name, x, spread in spreads
+        },
         illustrations=illustrations_of(case, held, nominal, shown),
         improvement=improvement,
     )
@@ -131,45 +130,36 @@ def add_fits(
 
 def _findings(judged: Judged, seed: int) -> dict[str, EffectFinding]:
     """Return the finding of each fitted effect in its likeliest hypothesis."""
-    if judged.fits is None:
+    fits, found = judged.fits, {}
+    if fits is None:
         return {}
-    of: dict[str, HypothesisFit] = {}
-    ranked = sorted(judged.fits.of, key=lambda h: -judged.hypotheses.get(h, 0.0))
+    ranked = sorted(fits.of, key=lambda h: -judged.hypotheses.get(h, 0.0))
     for hypothesis in (frozenset(judged.verdict), *ranked):
-        for name in hypothesis if hypothesis in judged.fits.of else ():
-            of.setdefault(name, judged.fits.of[hypothesis])
-    return {name: _finding(name, judged, judged.fits, fit, seed) for name, fit in of.items()}
-
-
-def _ranked(
-    diagnosis: Diagnosis, findings: Mapping[str, EffectFinding]
-) -> tuple[EffectFinding, ...]:
-    listed = {effect.name: effect for effect in diagnosis.effects} | dict(findings)
-    return tuple(sorted(listed.values(), key=lambda effect: -effect.probability))
+        for name in hypothesis if hypothesis in fits.of else ():
+            if name not in found:
+                found[name] = _finding(name, judged, fits, fits.of[hypothesis], seed)
+    return found
 
 
 def _finding(
     name: str, judged: Judged, fits: CaseFits, fit: HypothesisFit, seed: int
 ) -> EffectFinding:
-    fitted, comparison = fit.fitted, judged.comparison
-    before, recalibrated, after = (
-        fits.held_out(squared) for squared in (fits.before, fits.recalibrated, fit.squared)
-    )
-    spec = next(spec for spec in fitted.model.effects if spec.name == name)
-    interval = closed_interval(before, after, seed)
+    before, recalibrated, after = map(fits.held_out, (fits.before, fits.recalibrated, fit.squared))
+    spec = next(spec for spec in fit.fitted.model.effects if spec.name == name)
+    low, high = closed_interval(before, after, seed) or (None, None)
     return EffectFinding(
         name=name,
-        stage=comparison.library[name].stage.value,
+        stage=judged.comparison.library[name].stage.value,
         probability=judged.probabilities.get(name, 0.0),
         parameters=spec.parameters,
-        strength=strength_interval(fitted, spec),
+        strength=strength_interval(fit.fitted, spec),
         gap_before=rms(before),
         gap_recalibrated=rms(recalibrated),
         gap_after=rms(after),
         gap_floor=1.0,
         closed=closed_share(before, after),
-        closed_low=None if interval is None else interval[0],
-        closed_high=None if interval is None else interval[1],
+        closed_low=low,
+        closed_high=high,
         closed_by_effect=closed_share(recalibrated, after),
         fitted_with=tuple(other for other in fit.names if other != name),
     )
@@ -197,14 +187,6 @@ def strength_interval(fitted: Fitted, spec: LawSpec) -> tuple[float, float] | No
     factor = math.exp(SURE_90 * math.hypot(spread, _OF_FORM))
     low, high = sorted(float(spec.parameters[strength]) * x for x in (1.0 / factor, factor))
     return low, high
-
-
-def _intervals(fitted: Fitted) -> dict[str, tuple[float, float]]:
-    return {
-        name: (math.exp(x - SURE_90 * spread), math.exp(x + SURE_90 * spread))
-        for name, x in zip(OFFSETS, fitted.model.offsets, strict=True)
-        for spread in [fitted.spread[name]]
-    }
 
 
 _CLOSED = 1.75
@@ -313,17 +295,11 @@ def _made(case: Case, model: Model) -> tuple[dict[str, float], Rig] | None:
     factors = {name: factor for name, factor in model.factors.items() if factor != 1.0}
     kinetic, critical = (factors.get(name, 1.0) for name in ("kinetic_torque", "critical_torque"))
     least = max(kinetic * fit.kinetic_torque / fit.critical_torque for fit in case.rig.fits)
-    if critical < least * (1.0 + _ROUNDING):  # it is at least the kinetic torque
-        factors["critical_torque"] = least * (1.0 + _ROUNDING)
+    least *= 1.0 + 2e-6  # of the digits of a file
+    if critical < least:  # it is at least the kinetic torque
+        factors["critical_torque"] = least
     try:
         rig = changed_rig(case.rig, multiplied(case.rig, {}, factors), "improved rig")
     except ParameterError:  # beyond what is possible of a rig
         return None
-    return factors, with_effects(rig, [_in_file(spec) for spec in model.effects])
-
-
-_ROUNDING = 2e-6
-
-
-def _in_file(spec: LawSpec) -> LawSpec:
-    return parse_spec(str(spec))
+    return factors, with_effects(rig, [parse_spec(str(spec)) for spec in model.effects])

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from threading import Lock
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +45,8 @@ from sim.motion import Motion
 from sim.plan import DIAGNOSIS, Plan
 from sim.run import apply_sensor_effects, sensor_signals
 
-if TYPE_CHECKING:
-    Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
-
-
+Changed = tuple[Mapping[str, NDArray[np.complex128]], ImpulseResponses | None]
 T = TypeVar("T")
-
 
 _EXACT = Scatter(0.0, 0.0, 0.0, 0.0)
 
@@ -79,24 +75,22 @@ def with_offsets(rig: Rig, offsets: Mapping[str, float]) -> Rig:
     offsets : mapping of str to float
         Factors [-] by names of `OFFSETS`.
     """
-
-    def factor(name: str) -> float:
-        return offsets.get(name, 1.0)
+    factor = dict.fromkeys(OFFSETS, 1.0) | dict(offsets)
 
     def changed(fit: Fit) -> Fit:
-        kinetic = fit.kinetic_torque * factor("kinetic_torque")
+        kinetic = fit.kinetic_torque * factor["kinetic_torque"]
         return replace(
             fit,
-            elastomer_stiffness=fit.elastomer_stiffness * factor("elastomer_stiffness"),
-            critical_torque=max(fit.critical_torque * factor("critical_torque"), kinetic),
+            elastomer_stiffness=fit.elastomer_stiffness * factor["elastomer_stiffness"],
+            critical_torque=max(fit.critical_torque * factor["critical_torque"], kinetic),
             kinetic_torque=kinetic,
-            damping={support: c * factor("damping") for support, c in fit.damping.items()},
+            damping={support: c * factor["damping"] for support, c in fit.damping.items()},
         )
 
     return replace(
         rig,
         fits=tuple(changed(fit) for fit in rig.fits),
-        elastomer_inertia=rig.elastomer_inertia * factor("elastomer_inertia"),
+        elastomer_inertia=rig.elastomer_inertia * factor["elastomer_inertia"],
     )
 
 
@@ -137,7 +131,6 @@ def with_effects(rig: Rig, effects: Sequence[LawSpec]) -> Rig:
     return replace(rig, effects=(*others, *effects))
 
 
-@dataclass(eq=False)
 class ModelRuns:
     """Runs of models of one rig.
 
@@ -149,17 +142,15 @@ class ModelRuns:
         Further forms of effects, by the name of the effect and their own.
     """
 
-    rig: Rig
-    library: Mapping[str, Effect]
-    forms: dict[tuple[str, str], Effect]
-    transfer_functions: TransferFunctionCache = field(init=False)
-    _responses: _Cache[ImpulseResponses] = field(init=False, default_factory=lambda: _Cache())
-    _changed: _Cache[Changed] = field(init=False, default_factory=lambda: _Cache())
-    _motions: _Cache[Motion] = field(init=False, default_factory=lambda: _Cache())
-    _signals: _Cache[Signals] = field(init=False, default_factory=lambda: _Cache())
-
-    def __post_init__(self) -> None:
-        self.transfer_functions = TransferFunctionCache(self.rig, self.library)
+    def __init__(
+        self, rig: Rig, library: Mapping[str, Effect], forms: Mapping[tuple[str, str], Effect]
+    ) -> None:
+        self.rig, self.library, self._forms = rig, library, forms
+        self.transfer_functions = TransferFunctionCache(rig, library)
+        self._responses: _Cache[ImpulseResponses] = _Cache()
+        self._changed: _Cache[Changed] = _Cache()
+        self._motions: _Cache[Motion] = _Cache()
+        self._signals: _Cache[Signals] = _Cache()
 
     def simulated(
         self, model: Model, template: Recording, seed: int, scatter: Scatter | None = None
@@ -228,17 +219,14 @@ class ModelRuns:
         return signature(replace(template, samples=np.stack(rows), channels=channels))
 
     def _active(self, model: Model) -> list[ActiveEffect]:
-        active = [self.active(spec) for spec in with_effects(self.rig, model.effects).effects]
+        specs = with_effects(self.rig, model.effects).effects
+        active = [self.effect_of(spec).active(spec.parameters) for spec in specs]
         return [one for one in active if not one.is_off]
 
     def effect_of(self, spec: LawSpec) -> Effect:
         """Return the effect of a name, in a form of the simulator's own or a further one."""
-        further = self.forms.get((spec.name, str(spec.parameters.get("form"))))
+        further = self._forms.get((spec.name, str(spec.parameters.get("form"))))
         return self.library[spec.name] if further is None else further
-
-    def active(self, spec: LawSpec) -> ActiveEffect:
-        """Return an effect with the numbers of a model."""
-        return self.effect_of(spec).active(spec.parameters)
 
     def _radiated(
         self,
@@ -258,10 +246,8 @@ class ModelRuns:
         of_motion = (at_rest, seed, scatter, model.offsets, _key(on_motion))
 
         def radiated() -> Signals:
-            once, at = perturb_run(
-                with_offsets(self.rig, model.factors), known_condition(template.condition), scatter,
-                np.random.default_rng([seed, 0]),
-            )  # fmt: skip
+            rig, rng = with_offsets(self.rig, model.factors), np.random.default_rng([seed, 0])
+            once, at = perturb_run(rig, known_condition(template.condition), scatter, rng)
             plan = plan_repeat(once, at, on_motion, rate=fine, seconds=template.duration)
             tolerance = _COARSE if scatter == _EXACT else None
 

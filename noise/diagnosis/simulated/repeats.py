@@ -21,18 +21,15 @@ import numpy as np
 from models.condition import Condition, KnownCondition, known_condition
 from models.recording import Channel, Recording
 from models.rig import Fit, Rig
-from models.sensors import Sensor, Sensors
+from models.sensors import Sensors
 from models.transfer_functions.transfer_function import TransferFunction
 from noise.base.arrays import Array
-from noise.diagnosis.evidence.reconstruction import closed_spectrum
 from noise.diagnosis.simulated.transfer_functions import (
     OUTPUTS,
     TransferFunctionCache,
     chain_of,
-    faded,
-    predict_outputs,
     shift_clamp_mode,
-    with_clamp_shifted,
+    torque_outputs,
 )
 from sim.acquisition import Acquisition, decimate_sensed, digitise
 from sim.bushing import lumped_bushing
@@ -84,7 +81,11 @@ def nominal_repeats(
     condition, rate = known_condition(template.condition), template.rate
     functions, scatter = transfer_functions.of(template), scatter or Scatter()
     effects = activated(rig.effects, library or EFFECTS)
-    if any(e.effect.force or e.effect.chain or e.effect.sensors for e in effects):
+    sensors = rig.sensors
+    filters = {sensors.of(name).antialias for name in ("torque", *OUTPUTS)}
+    if len(filters) > 1 or any(
+        e.effect.force or e.effect.chain or e.effect.sensors for e in effects
+    ):
         return [_with_effects(rig, template, effects, functions, seed, scatter) for seed in seeds]
     decimation = DIAGNOSIS.decimation(rate)
     before = round(DIAGNOSIS.settling * rate)
@@ -92,7 +93,6 @@ def nominal_repeats(
     n = (recorded.stop + round(_RUNNING_OUT * rate)) * decimation
     at = (condition.interference, condition.support_stiffness)
     bushing = lumped_bushing(rig, *at)
-    corners = {name: rig.sensors.of(name).antialias for name in CHANNELS}
     recordings = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
@@ -100,27 +100,19 @@ def nominal_repeats(
         plan = plan_repeat(once, own, effects, rate=DIAGNOSIS.rate(rate), seconds=template.duration)
         motion = repeat_motion(replace(plan, n_settling=0, n_recorded=n), rng)
         # What a sensor's filter does to a sound, it does to the torque that makes it.
-        by_filter = {
-            corner: decimate_sensed(motion.torque, decimation, plan.rate, Sensor(antialias=corner))
-            for corner in {corners[name] for name in ("torque", *OUTPUTS)}
-        }
-        angle = decimate_sensed(motion.shaft_angle, decimation, plan.rate, rig.sensors.of("angle"))
-        lumped = lumped_bushing(once, *at)
-        outputs: dict[str, Array] = {}
-        for corner in {corners[name] for name in OUTPUTS}:
-            paths = {n: functions[n] for n in OUTPUTS if corners[n] == corner}
-            mean = by_filter[corner][recorded].mean()
-            torque = mean + faded(by_filter[corner] - mean, rate)
-            spectrum = with_clamp_shifted(
-                closed_spectrum(torque, rate), torque.size, rate, bushing, lumped
-            )
-            outputs |= predict_outputs(spectrum, torque.size, rate, paths)
+        torque, angle = (
+            decimate_sensed(x, decimation, plan.rate, sensors.of(name))
+            for name, x in (("torque", motion.torque), ("angle", motion.shaft_angle))
+        )
+        outputs = torque_outputs(
+            torque, torque[recorded].mean(), rate, functions, bushing, lumped_bushing(once, *at)
+        )
         signals = {
-            "torque": by_filter[corners["torque"]][recorded],
+            "torque": torque[recorded],
             **{name: outputs[name][recorded] for name in OUTPUTS},
             "angle": angle[recorded] - angle[before],
         }
-        through = rig.sensors.unfiltered()
+        through = sensors.unfiltered()
         recordings.append(record(signals, rate, condition, rng, scatter, sensors=through))
     return recordings
 

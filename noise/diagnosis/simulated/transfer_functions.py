@@ -255,31 +255,42 @@ def shift_clamp_mode(
     return replace(transfer, response=transfer.response * shift)
 
 
-def with_clamp_shifted(
-    spectrum: NDArray[np.complex128],
-    n: int,
+def torque_outputs(
+    torque: Array,
+    mean: float,
     rate: float,
+    transfer_functions: Mapping[str, TransferFunction],
     nominal: LumpedBushing,
     scattered: LumpedBushing,
-) -> NDArray[np.complex128]:
-    """Change a torque such that what it makes has the clamp's mode as `shift_clamp_mode` moves it.
+    changes: Mapping[str, NDArray[np.complex128]] | None = None,
+) -> dict[str, Array]:
+    """Send the torque of a scattered rig through transfer functions of the nominal one.
 
     Parameters
     ----------
-    spectrum, n, rate
+    torque : ndarray, shape (n,)
+        From before a recording to after it [Nm].
+    mean : float
+        Of the recording [Nm].
+    rate : float
+        Sampling rate [Hz].
+    transfer_functions, changes
         As `predict_outputs` takes them.
     nominal, scattered : LumpedBushing
-        As of `shift_clamp_mode`.
+        The clamp's mode is moved as `shift_clamp_mode` does.
 
     Returns
     -------
-    ndarray of complex
-        As long as `spectrum` [Nm].
+    dict of str to ndarray, shape (n,)
+        [output unit of each]
     """
-    if nominal.clamp_is_fixed:
-        return spectrum
-    lines = np.asarray(np.fft.rfftfreq(closed_length(n, rate), 1.0 / rate), np.float64)
-    return spectrum * _clamp_shift(lines, nominal, scattered)
+    torque = mean + faded(torque - mean, rate)
+    spectrum = closed_spectrum(torque, rate)
+    if not nominal.clamp_is_fixed:
+        length = closed_length(torque.size, rate)
+        lines = np.asarray(np.fft.rfftfreq(length, 1.0 / rate), np.float64)
+        spectrum = spectrum * _clamp_shift(lines, nominal, scattered)
+    return predict_outputs(spectrum, torque.size, rate, transfer_functions, changes)
 
 
 def _clamp_shift(
@@ -415,14 +426,11 @@ def radiated_sound(
     more = round(_GOING_ON * plan.rate)
     torque = motion.torque[: recorded.stop]
     torque = np.concatenate([torque, torque[-2 : -2 - more : -1]])
-    mean = float(torque[recorded].mean())
-    torque = mean + faded(torque - mean, plan.rate)
     at = (plan.interference, plan.support_stiffness)
-    bushing, scattered = lumped_bushing(rig, *at), lumped_bushing(plan.rig, *at)
-    spectrum = with_clamp_shifted(
-        closed_spectrum(torque, plan.rate), torque.size, plan.rate, bushing, scattered
-    )
-    outputs = predict_outputs(spectrum, torque.size, plan.rate, transfer_functions, changes)
+    outputs = torque_outputs(
+        torque, float(torque[recorded].mean()), plan.rate, transfer_functions,
+        lumped_bushing(rig, *at), lumped_bushing(plan.rig, *at), changes,
+    )  # fmt: skip
     acceleration, pressure = (outputs[name][: recorded.stop] for name in OUTPUTS)
     force, pulses = pulse_force(motion, effects), np.zeros_like(pressure)
     if paths is not None and np.any(force):
