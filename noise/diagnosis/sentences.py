@@ -35,8 +35,8 @@ def finding_of(diagnosis: Diagnosis, name: str) -> EffectFinding | None:
 
 def stage_of_effect(diagnosis: Diagnosis, name: str) -> str:
     """Return the stage that an effect acts in; empty if it is unknown."""
-    found = finding_of(diagnosis, name) or EFFECTS.get(name)
-    return "" if found is None else str(found.stage)
+    effect = finding_of(diagnosis, name) or EFFECTS.get(name)
+    return "" if effect is None else str(effect.stage)
 
 
 AGREES = 2.0
@@ -338,10 +338,10 @@ def location_sentence(diagnosis: Diagnosis) -> str:
 
     def row(stage: str) -> str:
         """Return a stage with its share of the gap and p-value as in the table."""
-        found = diagnosis.stages.get(stage)
-        if found is None:
+        finding = diagnosis.stages.get(stage)
+        if finding is None:
             return f"in the {stage}"
-        return f"in the {stage} ({percent(found.share)} of the gap, {p_number(found.p_value)})"
+        return f"in the {stage} ({percent(finding.share)} of the gap, {p_number(finding.p_value)})"
 
     low, high = place.band
     band = f"below {frequency(high)}" if low <= 0 else f"{frequency(low)} to {frequency(high)}"

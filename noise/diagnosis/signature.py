@@ -177,12 +177,29 @@ def group_costs(deviation: Array) -> Array:
 
 
 def squared_distance(deviation: Array) -> float:
-    """Return the mean of `group_costs` over the groups that are known [-]."""
+    """Return the mean of `group_costs` over the groups that are known [-].
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_values,)
+        In standard deviations [-].
+    """
     return float(np.nanmean(group_costs(deviation)))
 
 
 def channel_costs(deviation: Array) -> Array:
-    """Mean cost of each of `KINDS`, the torque's with that of its cycle."""
+    """Mean cost of each of `KINDS`, the torque's with that of its cycle.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n_values,)
+        In standard deviations [-].
+
+    Returns
+    -------
+    ndarray, shape (n_kinds,)
+        [-]
+    """
     *channels, cycle = group_costs(deviation)
     torque = KINDS.index("torque")
     if np.isfinite(cycle):

@@ -60,7 +60,7 @@ def test_a_plain_rig_has_no_gap(plain):
 
 def test_a_model_is_simulated_alike_each_time_and_as_it_was_recorded(plain):
     template = plain.recordings[1]
-    one, again = (plain.simulated(Model(), template, 3) for _ in range(2))
+    one, again = (plain.runs.simulated(Model(), template, 3) for _ in range(2))
     assert one.samples.tobytes() == again.samples.tobytes()
     assert one.samples.shape == template.samples.shape
     assert (one.rate, one.condition) == (template.rate, template.condition)

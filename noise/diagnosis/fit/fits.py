@@ -130,15 +130,15 @@ def add_fits(
 
 def _findings(judged: Judged, seed: int) -> dict[str, EffectFinding]:
     """Return the finding of each fitted effect in its likeliest hypothesis."""
-    fits, found = judged.fits, {}
+    fits, findings = judged.fits, {}
     if fits is None:
         return {}
     ranked = sorted(fits.of, key=lambda h: -judged.hypotheses.get(h, 0.0))
     for hypothesis in (frozenset(judged.verdict), *ranked):
         for name in hypothesis if hypothesis in fits.of else ():
-            if name not in found:
-                found[name] = _finding(name, judged, fits, fits.of[hypothesis], seed)
-    return found
+            if name not in findings:
+                findings[name] = _finding(name, judged, fits, fits.of[hypothesis], seed)
+    return findings
 
 
 def _finding(
