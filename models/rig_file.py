@@ -364,7 +364,6 @@ def changed_rig_text(
     effects: Sequence[LawSpec],
     tolerances: Mapping[str, float],
     notes: Sequence[str] = (),
-    friction: LawSpec | None = None,
 ) -> str:
     """Return the text of a rig file of the differences from another rig.
 
@@ -380,8 +379,6 @@ def changed_rig_text(
         Relative standard deviations [-]; ``"slip_pulse.amplitude"`` is that of an effect.
     notes : sequence of str
         Lines of comment at the top.
-    friction : LawSpec, optional
-        Friction law, if it differs from that of the base.
 
     Returns
     -------
@@ -401,7 +398,6 @@ def changed_rig_text(
     <BLANKLINE>
     """
     tables: dict[str, Any] = {
-        "friction": {} if friction is None else {"law": friction.name, **friction.parameters},
         "change": _nested(changes),
         "tolerances": _nested(tolerances),
     }

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from models.change import changed_rig
 from models.errors import ParameterError
 from models.radiation.rig_response import anchor_arm
-from models.rig import LawSpec, Rig, damping_at, parse_spec
+from models.rig import Rig, damping_at
 from models.rig_file import changed_rig_text
-from noise.app.design_controls import (
-    Base,
-    base_of,
-    read_values,
-)
+from noise.app.design_controls import Base, base_of, read_values
 from noise.base.files import atomic
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.screening.grid import fits_remark
@@ -27,7 +23,7 @@ from sim.plan import Setting
 from sim.shaft import ConstantSpeed
 from sim.temperature import at_temperature
 
-Values = Mapping[str, float | bool | str]
+Values = Mapping[str, float | bool]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,21 +33,18 @@ class Design:
     Parameters
     ----------
     base : Base
-    values : mapping of str to float, bool or str
+    values : mapping of str to float or bool
         Of all controls [unit of each].
     setting : Setting
         Setting of the live run.
-    changes : dict of str to str or float
+    changes : dict of str to str
         Entries of ``[change]``.
-    friction : LawSpec or None
-        Friction law, if it differs from that of the base.
     """
 
     base: Base
     values: Values
     setting: Setting
-    changes: Mapping[str, str | float]
-    friction: LawSpec | None
+    changes: Mapping[str, str]
 
     @property
     def rig(self) -> Rig:
@@ -74,9 +67,8 @@ class Design:
         """Return the text of the rig file `name` in a folder."""
         notes = [f"bushing-noise simulate --rig {name} {self.options}"]
         return changed_rig_text(
-            self.base.named_in(folder), self.changes, self.rig.effects, {}, notes,
-            friction=self.friction,
-        )  # fmt: skip
+            self.base.named_in(folder), self.changes, self.rig.effects, {}, notes
+        )
 
     def facts(self) -> dict[str, str]:
         """Return the resulting quantities of the bushing with units, by short name."""
@@ -135,16 +127,12 @@ def design_of(stated: object, bases: dict[str, Base]) -> Design:
     base = base_of(stated.get("base"), bases)
     values = read_values(base.controls, stated.get("values", {}))
     own = {control.key: control.value for control in base.controls}
-    friction, changes = _friction(values, own)
-    changes |= {
+    changes = {
         key.removeprefix("change."): f"x{value:g}"
         for key, value in values.items()
         if key.startswith("change.") and value != own[key]
     }
-    rig = replace(base.rig, effects=_effects(base.rig, values, own))
-    if friction is not None:
-        rig = replace(rig, friction=friction)
-    rig = changed_rig(rig, changes, "design")
+    rig = changed_rig(base.rig, changes, "design")
     if not values["fixed"]:
         anchor_arm(rig.beams, rig.plate, float(values["support"]))  # refuses what is off the plate
     setting = Setting(
@@ -154,41 +142,7 @@ def design_of(stated: object, bases: dict[str, Base]) -> Design:
         math.inf if values["fixed"] else float(values["support"]),
         float(values["temperature"]),
     )
-    return Design(base, values, setting, changes, friction)
-
-
-def _friction(values: Values, own: Values) -> tuple[LawSpec | None, dict[str, str | float]]:
-    """Return the friction law if it differs from the base, else its changed parameters."""
-    law = str(values["law"])
-    stated = {
-        key.removeprefix(f"law.{law}."): float(value)
-        for key, value in values.items()
-        if key.startswith(f"law.{law}.") and (law != own["law"] or value != own[key])
-    }
-    if law != own["law"]:
-        return LawSpec(law, stated), {}
-    return None, {f"friction.{name}": value for name, value in stated.items()}
-
-
-def _effects(rig: Rig, values: Values, own: Values) -> tuple[LawSpec, ...]:
-    """Return the effects of the base with their changes, then new effects."""
-    stated = {spec.name: spec for spec in rig.effects}
-    effects = []
-    for name in dict.fromkeys([*stated, *EFFECTS]):
-        if name not in EFFECTS:  # which is told where it is used
-            effects.append(stated[name])
-            continue
-        if not values[f"effect.{name}"]:
-            continue
-        start = f"effect.{name}."
-        keys = [key for key in values if key.startswith(start)]
-        if name in stated and all(values[key] == own[key] for key in keys):
-            effects.append(stated[name])
-            continue
-        changed = {key.removeprefix(start): values[key] for key in keys}
-        # Through its text, since that is what a rig file holds.
-        effects.append(parse_spec(str(LawSpec(name, changed)), "design, effect"))
-    return tuple(effects)
+    return Design(base, values, setting, changes)
 
 
 _NAME = re.compile(r"[\w][\w .+-]{0,79}")

@@ -1,13 +1,12 @@
 """Controls of a design: adjustable quantities with their bounds, for page and server.
 
-Friction laws and effects come from their registries, so new ones appear without changes here. A
-base is a shipped material or an opened rig file.
+A base is a shipped material or an opened rig file; friction law and effects are those of the base.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,10 +15,6 @@ from models.condition import CONDITION
 from models.errors import ParameterError
 from models.rig import Rig
 from models.rig_file import base_name, load_material_rig, load_rig, material_names
-from sim.effects import EFFECTS
-from sim.effects.effect import Stage
-from sim.friction import LAWS, friction_law
-from sim.parameters import Parameter, resolve
 
 if TYPE_CHECKING:
     from noise.app.opened import Opened
@@ -38,8 +33,6 @@ _SLEEVE = {
     "length": ("Length of the rubber", "torques, stiffness and inertia follow"),
     "youngs_modulus": ("Young's modulus of the rubber", "torques and stiffness follow"),
 }
-_REACH = 20.0
-"""Ratio of the ends of a slider to the value of its parameter."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +44,10 @@ class Control:
     key : str
         Key of its value in the state.
     kind : str
-        ``number``, ``switch`` or ``choice``.
+        ``number`` or ``switch``.
     group, label, meaning : str
         Heading, name and explanation.
-    value : float, bool or str
+    value : float or bool
         Value of the base [`unit`].
     unit : str
     low, high : float
@@ -63,19 +56,15 @@ class Control:
         Range of valid values [`unit`].
     log : bool
         Whether the slider is logarithmic.
-    choices : dict of str to str
-        Values of a choice and their names.
-    only : tuple of (str, str) or None
-        Key and value of another control that enables this one.
-    condition : bool
-        Whether it belongs to the operating condition, which is kept for another base.
+    unless : str
+        Key of a switch that disables this control.
     """
 
     key: str
     kind: str
     group: str
     label: str
-    value: float | bool | str
+    value: float | bool
     meaning: str = ""
     unit: str = ""
     low: float = 0.0
@@ -83,15 +72,13 @@ class Control:
     least: float = 0.0
     most: float = 1.0
     log: bool = False
-    choices: Mapping[str, str] | None = None
-    only: tuple[str, str | bool] | None = None
-    condition: bool = False
+    unless: str = ""
 
     def as_json(self) -> dict[str, object]:
         """Return the fields for the page."""
         return asdict(self)
 
-    def read(self, stated: object) -> float | bool | str:
+    def read(self, stated: object) -> float | bool:
         """Parse the value of a request.
 
         Raises
@@ -103,10 +90,6 @@ class Control:
             if isinstance(stated, bool):
                 return stated
             raise ParameterError(f"{self.label}: must be on or off")
-        if self.kind == "choice":
-            if isinstance(stated, str) and stated in (self.choices or {}):
-                return stated
-            raise ParameterError(f"{self.label}: must be one of {', '.join(self.choices or {})}")
         number = isinstance(stated, int | float) and not isinstance(stated, bool)
         if not number or not self.least <= float(stated) <= self.most:  # type: ignore[arg-type]
             raise ParameterError(
@@ -122,15 +105,13 @@ def controls_of(rig: Rig) -> list[Control]:
     Examples
     --------
     >>> from models.rig_file import load_material_rig
-    >>> keys = [control.key for control in controls_of(load_material_rig("PDMS"))]
-    >>> keys[:3], "law.lugre.stribeck_speed" in keys, "effect.slip_pulse.amplitude" in keys
-    (['speed', 'interference', 'fixed'], True, True)
+    >>> [control.key for control in controls_of(load_material_rig("PDMS"))][:6]
+    ['speed', 'interference', 'fixed', 'support', 'temperature', 'change.critical_torque']
     """
-    conditions = [replace(one, condition=True) for one in _condition(rig)]
-    return [*conditions, *_bushing(rig), *_law(rig), *_effects(rig)]
+    return [*_condition(rig), *_bushing(rig)]
 
 
-def read_values(controls: list[Control], stated: object) -> dict[str, float | bool | str]:
+def read_values(controls: list[Control], stated: object) -> dict[str, float | bool]:
     """Return the values of all controls, from a request or else from the base.
 
     Raises
@@ -152,12 +133,11 @@ def read_values(controls: list[Control], stated: object) -> dict[str, float | bo
 
 def _number(
     key: str, group: str, label: str, value: float, unit: str, slider: tuple[float, float],
-    admitted: tuple[float, float], meaning: str = "", *, log: bool = False,
-    only: tuple[str, str | bool] | None = None,
+    admitted: tuple[float, float], meaning: str = "", *, log: bool = False, unless: str = "",
 ) -> Control:  # fmt: skip
     return Control(
         key, "number", group, label, float(f"{value:.6g}"), meaning, unit, *slider, *admitted,
-        log=log, only=only,
+        log=log, unless=unless,
     )  # fmt: skip
 
 
@@ -178,7 +158,7 @@ def _condition(rig: Rig) -> Iterator[Control]:
     yield Control("fixed", "switch", group, "Clamp bolted to the baseplate", False)
     yield _number(
         "support", group, "Support stiffness", support.default, "Nm/rad", (1.2e3, 2e4),
-        (support.low, support.high), log=True, only=("fixed", False),
+        (support.low, support.high), log=True, unless="fixed",
     )  # fmt: skip
     yield _number(
         "temperature", group, "Temperature", temperature.default, "°C", temperature.usual,
@@ -193,60 +173,6 @@ def _bushing(rig: Rig) -> Iterator[Control]:
             f"change.{name}", "Bushing, as a factor of the base", label, 1.0, "x", (0.2, 5.0),
             (0.01, 100.0), meaning, log=True,
         )  # fmt: skip
-
-
-def _law(rig: Rig) -> Iterator[Control]:
-    group, own = "Friction law", rig.friction
-    choices = {name: name.replace("_", " ") for name in LAWS}
-    yield Control("law", "choice", group, "Law", own.name, choices=choices)
-    for name in LAWS:
-        law = friction_law(name)
-        stated = own.parameters if name == own.name else {}
-        values = resolve(f"friction law {name!r}", law.parameters, stated)
-        for key, parameter in law.parameters.items():
-            yield _parameter(f"law.{name}.{key}", group, parameter, values[key], ("law", name))
-
-
-def _effects(rig: Rig) -> Iterator[Control]:
-    own = {spec.name: spec for spec in rig.effects}
-    stages = list(Stage)
-    for name, effect in sorted(EFFECTS.items(), key=lambda one: stages.index(one[1].stage)):
-        on, group = name in own, f"Effects of the {effect.stage.value}"
-        active = effect.active(own[name].parameters if on else {})
-        remark = "not heard here, but in what is saved" if effect.needs_whole_run else ""
-        yield Control(f"effect.{name}", "switch", group, name.replace("_", " "), on, remark)
-        only = (f"effect.{name}", True)
-        if len(effect.forms) > 1:
-            forms = {form: form.replace("_", " ") for form in effect.forms}
-            yield Control(
-                f"effect.{name}.form", "choice", group, f"{name.replace('_', ' ')}: form",
-                active.form, choices=forms, only=only,
-            )  # fmt: skip
-        for key, parameter in effect.parameters.items():
-            yield _parameter(
-                f"effect.{name}.{key}", group, parameter, active.values[key], only,
-                f"{name.replace('_', ' ')}: ",
-            )  # fmt: skip
-
-
-def _parameter(
-    key: str, group: str, parameter: Parameter, value: float, only: tuple[str, str | bool],
-    of: str = "",
-) -> Control:  # fmt: skip
-    """Return the control of a parameter of a law or effect."""
-    centre = value or parameter.default
-    low, high, log = parameter.low, parameter.high, False
-    if centre > 0.0:
-        high = min(high, centre * _REACH)
-        if parameter.low > 0.0 or value > 0.0:
-            low, log = max(low, centre / _REACH), True
-        else:
-            low = max(low, 0.0)
-    label = f"{of}{key.rpartition('.')[2].replace('_', ' ')}"
-    return _number(
-        key, group, label, value, parameter.unit, (low, high), (parameter.low, parameter.high),
-        parameter.meaning, log=log, only=only,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -101,14 +101,14 @@ def routes(opened: Opened) -> list[BaseRoute]:
         return JSONResponse(save_rig(request, bases, opened.folder))
 
     return [
-        Route("/api/design", listed),
-        Route("/api/design/controls", controls),
-        Route("/api/design/sound", body(sound), methods=["POST"]),
-        Route("/api/design/change", body(changed), methods=["POST"]),
-        Route("/api/design/facts", body(facts_of), methods=["POST"]),
-        Route("/api/design/levels", levels),
-        Route("/api/design/chart", body(charted), methods=["POST"]),
-        Route("/api/design/rig", body(saved), methods=["POST"]),
+        Route("/", listed),
+        Route("/controls", controls),
+        Route("/sound", body(sound), methods=["POST"]),
+        Route("/change", body(changed), methods=["POST"]),
+        Route("/facts", body(facts_of), methods=["POST"]),
+        Route("/levels", levels),
+        Route("/chart", body(charted), methods=["POST"]),
+        Route("/rig", body(saved), methods=["POST"]),
     ]
 
 

@@ -23,7 +23,7 @@ from noise.app.jury import VOTES, Jury, Votes, in_words, scale
 from noise.app.opened import Opened
 from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
-from noise.audio.render import FullScale, Measured, full_scales, measure
+from noise.audio.render import Measured, full_scales, measure
 from noise.audio.sound import audible, refuse_mixed
 from noise.recordings.wav import wav_bytes
 
@@ -33,8 +33,8 @@ MOST = 40
 LONGEST = 30.0
 """Maximum duration of a sound, from the start of the recording [s]."""
 
-ONE_GAIN, EQUAL_LOUDNESS = GAINS = ("one gain", "equal loudness")
-"""Playback: one gain for all sounds, or equal loudness."""
+ONE_GAIN = "one gain"
+"""Playback, as the table of votes states it."""
 
 _LONGEST_TEXT = 200
 _LONGEST_WAIT = 1e6
@@ -68,7 +68,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
         }  # fmt: skip
 
     def jury_of(request: Request) -> Jury:
-        return votes.jury(request.path_params["jury"])
+        jury = votes.jury(request.path_params["jury"])
+        if jury.played != ONE_GAIN:
+            raise ParameterError(f"jury {jury.number}: was played at {jury.played}; begin another")
+        return jury
 
     def juries(_: Request) -> Response:
         listed = [state(jury) for jury in votes.juries()]
@@ -84,20 +87,19 @@ def routes(opened: Opened) -> list[BaseRoute]:
         question, listener = (text(setup, key, _LONGEST_TEXT) for key in ("question", "listener"))
         if not question:
             raise ParameterError("question: must say what is asked of two sounds")
-        played = choice(setup, "played", GAINS, ONE_GAIN)
         pairs = len(chosen) * (len(chosen) - 1) // 2
         comparisons = number(setup, "comparisons", len(chosen) - 1, pairs, pairs, whole=True)
         names = [opened.job(index).name for index in chosen]
-        playing.gain(indices(names), played)  # or nobody could begin
+        playing.gain(indices(names))  # or nobody could begin
         jury = votes.begin(
-            names, listener=listener, question=question, played=played, seed=opened.seed,
+            names, listener=listener, question=question, played=ONE_GAIN, seed=opened.seed,
             comparisons=int(comparisons),
         )  # fmt: skip
         return JSONResponse(state(jury))
 
     def gone_on(request: Request) -> Response:
         jury = jury_of(request)
-        gain = playing.gain(indices(jury.sounds), jury.played)
+        gain = playing.gain(indices(jury.sounds))
         return JSONResponse(state(jury) | {"gain": gain})
 
     def audio(request: Request) -> Response:
@@ -106,7 +108,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
         if side is None or place >= len(jury.pairs):
             raise ParameterError("there is no such sound")
         (index,) = indices([jury.pairs[place][side]])
-        sound = playing.wav(index, indices(jury.sounds), jury.played)
+        sound = playing.wav(index, indices(jury.sounds))
         return Response(sound, media_type="audio/wav")
 
     def voted(request: Request, vote: dict[str, Any]) -> Response:
@@ -136,7 +138,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
 
 class JuryPlaying:
-    """Sounds of juries at one gain or equal loudness, safe for several threads.
+    """Sounds of juries at one gain, safe for several threads.
 
     Parameters
     ----------
@@ -148,54 +150,41 @@ class JuryPlaying:
         self._opened = opened
         self._sounds = sounds
         self._lock = Lock()
-        self._measured: dict[tuple[int, int, int, bool], Measured] = {}
+        self._measured: dict[int, Measured] = {}
 
-    def gain(self, indices: Sequence[int], played: str) -> str:
+    def gain(self, indices: Sequence[int]) -> str:
         """Return the gain of playback in words.
 
         Raises
         ------
         BushingNoiseError
-            The sounds cannot be played at this gain.
+            The sounds cannot be played at one gain.
         """
-        full_scale = self._full_scales(indices, played)[str(indices[0])]
-        if full_scale.target is not None:
-            return f"equal loudness, {full_scale.target:.0f} LUFS"
+        full_scale = self._full_scale(indices)
         if not self._sounds.track(indices[0]).calibrated:
-            return f"one gain: full scale = {full_scale.value:.3g} of that of the files"
-        level = 20.0 * math.log10(full_scale.value / REFERENCE_PRESSURE)
-        return f"one gain: full scale = {full_scale.value:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
+            return f"one gain: full scale = {full_scale:.3g} of that of the files"
+        level = 20.0 * math.log10(full_scale / REFERENCE_PRESSURE)
+        return f"one gain: full scale = {full_scale:.4g} Pa ({level:.0f} dB peak re 20 µPa)"
 
-    def wav(self, index: int, indices: Sequence[int], played: str) -> bytes:
+    def wav(self, index: int, indices: Sequence[int]) -> bytes:
         """Return one of several sounds as a WAV file of floats.
 
         Raises
         ------
         BushingNoiseError
-            The sounds cannot be played at this gain.
+            The sounds cannot be played at one gain.
         """
-        full_scale = self._full_scales(indices, played)[str(index)].value
-        return wav_bytes(audible(self._sound_of(index), _RATE) / full_scale, _RATE, 32)
+        sound = audible(self._sound_of(index), _RATE)
+        return wav_bytes(sound / self._full_scale(indices), _RATE, 32)
 
-    def _full_scales(self, indices: Sequence[int], played: str) -> dict[str, FullScale]:
-        matched = played == EQUAL_LOUDNESS
-        measured = {str(index): self._measure(index, match=matched) for index in indices}
-        if not matched:
-            kinds = {of.calibrated: of.name for of in measured.values()}
-            refuse_mixed(kinds, "leave one of them out, or compare at equal loudness")
-        return full_scales(measured, matched=matched)
-
-    def _measure(self, index: int, *, match: bool) -> Measured:
-        path = self._opened.job(index).path
-        try:
-            state = path.stat()
-        except OSError as error:
-            raise ParameterError(f"{path.name}: {error.strerror}") from None
-        key = index, state.st_size, state.st_mtime_ns, match
+    def _full_scale(self, indices: Sequence[int]) -> float:
         with self._lock:
-            if key not in self._measured:
-                self._measured[key] = measure([self._sound_of(index)], match=match)
-            return self._measured[key]
+            for index in indices:
+                if index not in self._measured:
+                    self._measured[index] = measure([self._sound_of(index)])
+        measured = {str(index): self._measured[index] for index in indices}
+        refuse_mixed({of.calibrated: of.name for of in measured.values()}, "leave one of them out")
+        return full_scales(measured)[str(indices[0])].value
 
     def _sound_of(self, index: int) -> Recording:
         name = self._opened.job(index).name

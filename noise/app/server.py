@@ -8,7 +8,7 @@ import signal
 import socket
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from threading import Lock
@@ -18,7 +18,7 @@ from jinja2 import Environment, PackageLoader
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, JSONResponse
-from starlette.routing import BaseRoute, Match, Mount, Route, Router
+from starlette.routing import BaseRoute, Mount, Route, Router
 from starlette.staticfiles import StaticFiles
 
 from models.errors import BushingNoiseError
@@ -33,50 +33,25 @@ if TYPE_CHECKING:
     from noise.app.opened import Opened
 
 
-class LazyRoutes(BaseRoute):
-    """Routes with a common prefix, created on the first request.
+def lazy_app(make: Callable[[], Sequence[BaseRoute]]) -> ASGIApp:
+    """Return an application of routes that are made on the first request, in a thread."""
+    made, lock = cache(lambda: Router(routes=make())), Lock()
 
-    Parameters
-    ----------
-    prefix : str
-        Common prefix.
-    make : callable
-        Returns the routes; called once, in a thread.
-    """
+    def router() -> Router:
+        with lock:
+            return made()
 
-    def __init__(self, prefix: str, make: Callable[[], Sequence[BaseRoute]]) -> None:
-        self._prefix, self._make = prefix, make
-        self._lock = Lock()
-        self._router: Router | None = None
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        await (await run_in_threadpool(router))(scope, receive, send)
 
-    def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Match a request against the prefix."""
-        path = scope["path"]
-        mine = path == self._prefix or path.startswith(f"{self._prefix}/")
-        return (Match.FULL if mine and scope["type"] == "http" else Match.NONE), {}
-
-    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request."""
-        router = await run_in_threadpool(self._made) if self._router is None else self._router
-        await router(scope, receive, send)
-
-    def _made(self) -> Router:
-        with self._lock:
-            if self._router is None:
-                self._router = Router(routes=self._make())
-            return self._router
+    return app
 
 
 VIEWS = {"labels": "Recordings", "design": "Design", "jury": "Jury"}
 """Views in the order of their tabs: folder under ``static``, title."""
 
-_ROUTES = {
-    "noise.app.sounds": "",
-    "noise.app.label_view": "",
-    "noise.app.design_view": "/api/design",
-    "noise.app.jury_view": "",
-}
-"""Modules of routes; of one that takes a while to be loaded, what all its routes begin with."""
+_ROUTES = ("noise.app.sounds", "noise.app.label_view", "noise.app.jury_view")
+"""Modules of routes besides `noise.app.design_view`, which takes a while to be loaded."""
 
 _STATIC = Path(__file__).parent / "static"
 
@@ -120,11 +95,13 @@ def create_app(
         Mount("/static/shared", StaticFiles(packages=[("noise.pages", "templates/shared")])),
         Mount("/static", StaticFiles(directory=_STATIC)),
     ]
-    for module, prefix in _ROUTES.items():
-        if prefix and not opened.rigs:
-            routes.append(LazyRoutes(prefix, partial(routes_of, module)))
-        else:  # what is wrong with a rig that is named is told where it was named
-            routes += routes_of(module)
+    for module in _ROUTES:
+        routes += routes_of(module)
+    design = partial(routes_of, "noise.app.design_view")
+    if opened.rigs:  # what is wrong with a rig that is named is told where it was named
+        made = design()
+        design = lambda: made  # noqa: E731
+    routes.append(Mount("/api/design", lazy_app(design)))
     app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
     return Gate(app, token, port)
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, ExitStack, nullcontext
-from dataclasses import dataclass, field
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any
@@ -104,21 +104,11 @@ class Track:
         return f"dB re {self.reference:g} {self.unit}"
 
 
-@dataclass
-class _Reading:
-    """Recording that is read once."""
-
-    path: Path
-    lock: Lock = field(default_factory=Lock)
-    open: ExitStack = field(default_factory=ExitStack)
-    blocks: RecordingBlocks | None = None
-
-    def get(self) -> RecordingBlocks:
-        with self.lock:
-            if self.blocks is None:
-                # It is closed when nobody holds it any more, who may be reading still.
-                self.blocks = self.open.enter_context(open_blocks(self.path))
-            return self.blocks
+@lru_cache(_MOST_OPEN)
+def _open(path: Path, *_state: int) -> tuple[RecordingBlocks, Lock, object]:
+    """Open a recording in a state of its file; it is closed when nobody holds its context."""
+    context = open_blocks(path)
+    return context.__enter__(), Lock(), context
 
 
 class SoundCache:
@@ -131,8 +121,6 @@ class SoundCache:
 
     def __init__(self, opened: Opened) -> None:
         self._opened = opened
-        self._lock = Lock()
-        self._readings: OrderedDict[tuple[int, int, int], _Reading] = OrderedDict()
 
     def blocks(self, index: int) -> RecordingBlocks:
         """Return a recording; a changed file is read again.
@@ -142,7 +130,7 @@ class SoundCache:
         ParameterError, RecordingError
             The recording does not exist or cannot be read.
         """
-        return self._reading(index).get()
+        return self._reading(index)[0]
 
     def track(self, index: int, name: str = "") -> Track:
         """Return a channel of a recording; by default the first of sound pressure, or any.
@@ -153,31 +141,25 @@ class SoundCache:
             There is none, or it cannot be read.
         """
         reading = self._reading(index)
-        blocks = reading.get()
+        blocks, lock, _ = reading
         names = [channel.name for channel in blocks.channels]
         if name and name not in names:
             raise ParameterError(f"channel {name!r}: {blocks.name} has {', '.join(names)}")
         row = names.index(name) if name else blocks.first("pressure") or 0
 
         def read(first: int, last: int) -> NDArray[np.float64]:
-            with reading.lock:
-                return np.asarray(blocks.read(first, last)[row])
+            with lock:
+                return np.asarray(reading[0].read(first, last)[row])
 
         return Track(blocks.channels[row], blocks.calibrated, blocks.rate, blocks.n_samples, read)
 
-    def _reading(self, index: int) -> _Reading:
+    def _reading(self, index: int) -> tuple[RecordingBlocks, Lock, object]:
         path = self._opened.job(index).path
         try:
             status = path.stat()
         except OSError as error:
             raise RecordingError(f"{path.name}: {error.strerror}") from None
-        key = index, status.st_size, status.st_mtime_ns
-        with self._lock:
-            reading = self._readings.setdefault(key, _Reading(path))
-            self._readings.move_to_end(key)
-            while len(self._readings) > _MOST_OPEN:
-                self._readings.popitem(last=False)
-        return reading
+        return _open(path, status.st_size, status.st_mtime_ns)
 
 
 def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple[int, int]:
@@ -220,10 +202,6 @@ _LONGEST_PLAYED = 600.0
 _LONGEST_BANDS = 120.0
 """Maximum interval for band levels [s]."""
 
-_LEAST_BAND = 20.0
-"""Maximum level of an interval, A-weighted, over its strongest third octave [dB]: that of equally
-strong bands is 16 dB over each of them."""
-
 
 def wav(track: Track, query: Query) -> bytes:
     """Return an interval as a WAV file of floats in the unit of the channel."""
@@ -237,10 +215,6 @@ def bands(track: Track, query: Query) -> dict[str, object]:
     signal = track.read(first, last)
     measured = sound_levels(signal, track.rate, reference=track.reference)
     octaves = {band: _plain(level) for band, level in measured.third_octaves.items()}
-    strongest = max((level for level in octaves.values() if level is not None), default=-math.inf)
-    # The windows of the spectrum fade out the ends of the interval, which may hold all its sound.
-    if strongest < measured.level_a - _LEAST_BAND:
-        octaves = dict.fromkeys(octaves)
     return {
         "start": first / track.rate,
         "end": last / track.rate,

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from models.errors import ParameterError
 from noise.audio.sound import resampled
-from noise.recordings.wav import largest_sample
 
 LOUDNESS_BLOCK = 0.4
 """Shortest sound that has a loudness [s] (ITU-R BS.1770)."""
@@ -69,29 +68,6 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
     """
     peak = max((float(np.abs(signal).max(initial=0.0)) for signal in signals), default=0.0)
     return peak * 10.0 ** (headroom_db / 20.0) or 1.0
-
-
-def least_full_scale(samples: NDArray[np.float64], bits: int) -> float:
-    """Return the smallest full scale at which no sample clips, rounded up to four digits.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (n_samples,)
-        [unit of the sound]
-    bits : int
-        Of a sample in the file.
-
-    Returns
-    -------
-    float
-        [unit of the sound]
-
-    Examples
-    --------
-    >>> least_full_scale(np.array([0.5, -1.23456]), 24)
-    1.235
-    """
-    return _rounded_up(float(np.abs(samples).max(initial=0.0)) / largest_sample(bits))
 
 
 def full_scale_without_clipping(peak: float) -> float:

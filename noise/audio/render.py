@@ -30,7 +30,6 @@ from noise.audio.gain import (
     QUIETEST_FULL_SCALE,
     common_full_scale,
     full_scale_without_clipping,
-    least_full_scale,
     loudness,
     matched_full_scale,
     matched_loudness,
@@ -356,10 +355,7 @@ def write_audio(
     if not 0.0 < full_scale < math.inf:
         raise ParameterError(f"{target}: full scale is {full_scale!r}, expected a positive number")
     if not np.abs(samples).max(initial=0.0) <= full_scale * largest_sample(_BITS):
-        raise ParameterError(
-            f"{target}: full scale {full_scale:g} would clip; the smallest that does not is "
-            f"{least_full_scale(samples, _BITS):g}"
-        )
+        raise ParameterError(f"{target}: a sample would clip at full scale {full_scale:g}")
     channel = replace(pressure_channel(recording), name="pressure")
     content = json.loads(
         sidecar_text(replace(recording, samples=np.empty((1, 0)), channels=(channel,)))

@@ -249,7 +249,7 @@ def _display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> Entry
         duration=end - start,
         tracks=_tracks(entry, start, end) if end > start else (),
         ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
-        alt=_alt(entry, start, end),
+        alt=f"Spectrogram of {entry.title}, {_seconds(start)} to {_seconds(end)} s",
     )
 
 
@@ -326,13 +326,6 @@ def _tracks(entry: Entry, start: float, end: float) -> tuple[tuple[str, tuple[Ba
 
 def _per_cent(value: float, start: float, end: float, digits: int = 2) -> float:
     return round(100.0 * (value - start) / (end - start), digits)
-
-
-def _alt(entry: Entry, start: float, end: float) -> str:
-    parts = [f"{p.label} from {_seconds(p.start)} to {_seconds(p.end)} s" for p in entry.parts]
-    labels = f": {'; '.join(parts[:6])}" if parts else ""
-    more = " and more" if len(parts) > 6 else ""
-    return f"Spectrogram of {entry.title}, {_seconds(start)} to {_seconds(end)} s{labels}{more}"
 
 
 def _seconds(value: float) -> str:

@@ -2,8 +2,8 @@
 
 Words or numbers on the maps repeat the meaning of colours. A screen knows thousands of conditions,
 and nobody listens to them all: each chosen condition is heard of every design. Chosen are where
-each noise of each design is loudest, where levels differ most, and the middles of the regions of
-each combination of noises; a click anywhere else plays the nearest of these.
+each noise of each design is loudest, the middles of the regions of each combination of noises, and
+points far from these; a click anywhere else plays the nearest.
 """
 
 from __future__ import annotations
@@ -45,9 +45,6 @@ MOST_SILENT = 2
 
 _MOST_SOUNDS = 12
 """Maximum number of audible conditions of a place."""
-
-_SILENCE = 40.0
-"""Level of a design without a noise, where levels are compared [dB(A)]."""
 
 _NEAR = 0.05
 """Distance of points of the same labels that sound alike, as a share of the axes."""
@@ -130,56 +127,40 @@ def chosen_points(place: Place, most: int) -> list[tuple[int, int]]:
     [(0, 0), (0, 1)]
     """
     label, level = place.of("label"), place.of("level").astype(float)
-    n_rows, n_columns = label.shape[1:]
-    rows, columns = np.divmod(np.arange(n_rows * n_columns), n_columns)
     grid = place.maps[0].grid
     axes = (np.array(axis) for axis in (grid.interference, grid.speed))
     fits, speeds = ((axis - axis[0]) / (np.ptp(axis) or 1.0) for axis in axes)
-    at = np.column_stack((fits[rows], speeds[columns]))
-    labels = label.reshape(label.shape[0], -1).T
+    at = np.stack(np.meshgrid(fits, speeds, indexing="ij"), axis=-1).reshape(-1, 2)
+    labels, levels = (one.reshape(one.shape[0], -1).T for one in (label, level))
     combination = np.unique(labels, axis=0, return_inverse=True)[1].reshape(-1)
     silent = (labels == "none").all(axis=1)
     certain = (place.of("how") != REFINED).all(axis=0).ravel()
-    for kind in np.unique(combination):  # of each, simulated points if there are any
-        if not certain[combination == kind].any():
-            certain[combination == kind] = True
-    levels = np.where(labels == "none", _SILENCE, np.nan_to_num(level.reshape(labels.T.shape).T))
+    middles = np.array([at[combination == kind].mean(axis=0) for kind in combination])
+    off_middle = np.linalg.norm(at - middles, axis=1)
     chosen: list[int] = []
 
-    def distances() -> NDArray[np.float64]:
-        """Return distances to chosen points of the same labels; without one, those to a middle."""
-        distance = np.empty(len(at))
-        for kind in np.unique(combination):
-            own = np.flatnonzero(combination == kind)
-            same = [one for one in chosen if combination[one] == kind]
-            if same:
-                distance[own] = np.linalg.norm(at[own][:, None] - at[same], axis=2).min(axis=1)
-            else:  # farther than any; of several the largest first
-                distance[own] = (
-                    10.0 + own.size - np.linalg.norm(at[own] - at[own].mean(axis=0), axis=1)
-                )
-        if sum(silent[chosen]) >= MOST_SILENT:
-            distance[silent] = 0.0
-        return distance
+    def values() -> NDArray[np.float64]:
+        """Return how much each point adds: its distance from those of the same labels."""
+        value = 4.0 - off_middle  # where there is none, more, and most in the middle
+        for one in chosen:
+            alike = combination == combination[one]
+            value[alike] = np.minimum(value[alike], np.linalg.norm(at[alike] - at[one], axis=1))
+        value[silent] *= silent[chosen].sum() < MOST_SILENT
+        return np.where(certain, value, 0.5 * value)
 
     loudest = [
-        (levels[:, design][own].max(), int(own.nonzero()[0][levels[:, design][own].argmax()]))
+        (levels[own, design].max(), int(own[levels[own, design].argmax()]))
         for design in range(labels.shape[1])
         for name in NAMED
-        if (own := labels[:, design] == name).any()
+        if (own := np.flatnonzero(labels[:, design] == name)).size
     ]
-    first = [one for _, one in sorted(loudest, reverse=True)]
-    if labels.shape[1] > 1:
-        first.append(int(np.where(certain, np.ptp(levels, axis=1), -1.0).argmax()))
-    for one in first:
-        if len(chosen) < most and distances()[one] > _NEAR:
+    for _, one in sorted(loudest, reverse=True):
+        if len(chosen) < most and values()[one] > _NEAR:
             chosen.append(one)
-    while len(chosen) < most:
-        far = np.where(certain, distances(), 0.0)
-        if far.max() <= _NEAR:
-            break
-        chosen.append(int(far.argmax()))
-    return sorted(((int(rows[i]), int(columns[i])) for i in chosen), key=lambda one: one[::-1])
+    while len(chosen) < most and (value := values()).max() > _NEAR:
+        chosen.append(int(value.argmax()))
+    rows, columns = np.unravel_index(np.array(chosen, int), label.shape[1:])
+    return sorted(zip(rows.tolist(), columns.tolist(), strict=True), key=lambda one: one[::-1])
 
 
 @dataclass(frozen=True)

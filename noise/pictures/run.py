@@ -1,6 +1,6 @@
-"""Picture of a run: time histories, phase planes and autospectra.
+"""Picture of a run: time histories and autospectra.
 
-Time histories and phase planes show the motion as it was computed, which no sensor sees;
+Time histories show the motion as it was computed, which no sensor sees;
 autospectra show what the sensors recorded, up to half the sampling rate. A linear axis would hide
 the slips' harmonics below 2 kHz or a creak's rattle above, so frequencies are on a logarithmic one.
 
@@ -114,9 +114,6 @@ _DYNAMIC_RANGE = 120.0
 _WHOLE_ALONE = 1.5
 """A run that is no longer than so many windows is shown once."""
 
-_ORBIT = 20_000
-"""Samples of the motion in the background of the phase planes."""
-
 _LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED = 0.1, 0.1, 0.1
 """What an axis spans at least [Nm], [mrad], [rad/s]."""
 
@@ -133,9 +130,8 @@ def plot_run(run: Run) -> Figure:
     -------
     matplotlib.figure.Figure
         Torque, displacements and sliding speed over time, the whole run and beside it a few slips;
-        of these the phase plane, and torque against sliding speed; autospectra of torque,
-        acceleration and sound pressure, one-sided, as levels in dB. It belongs to no window and
-        to no pyplot; ``figure.savefig("run.png")`` writes it.
+        autospectra of torque, acceleration and sound pressure, one-sided, as levels in dB. It
+        belongs to no window and to no pyplot; ``figure.savefig("run.png")`` writes it.
 
     Notes
     -----
@@ -151,11 +147,10 @@ def plot_run(run: Run) -> Figure:
     """
     window = run_window(run)
     with styled():
-        figure = new_figure(17.0, condition_words(run.recording.condition, run.motion))
-        parts = figure.subfigures(3, 1, squeeze=False, height_ratios=(6.6, 4.0, 6.4))[:, 0]
-        _histories(parts[0], run.motion, window)
-        _planes(parts[1], run.motion, window)
-        _spectra(parts[2], run, window)
+        figure = new_figure(13.0, condition_words(run.recording.condition, run.motion))
+        histories, spectra = figure.subfigures(2, 1, height_ratios=(6.6, 6.4))
+        _histories(histories, run.motion, window)
+        _spectra(spectra, run, window)
     return figure
 
 
@@ -239,44 +234,6 @@ def _motion_curves(motion: Motion, part: slice) -> tuple[list[Curve], ...]:
             (motion.shaft_speed[part], GREY, "shaft", 1.0),
         ],
     )
-
-
-def _planes(figure: SubFigure, motion: Motion, window: Window) -> None:
-    """Draw the phase plane of the elastomer surface, and torque over sliding speed."""
-    left, right = figure.subplots(1, 2)
-    spare = max(0, _ORBIT - (window.last - window.first)) // 2
-    around = slice(max(0, window.first - spare), window.last + spare)
-    zoom = slice(window.first, window.last)
-    angle, surface = 1e3 * motion.interface_angle, motion.interface_speed
-    sliding = motion.sliding_speed
-    pale = {"color": BLUE, "linewidth": 0.5, "alpha": 0.25}
-    left.plot(angle[around], surface[around], **pale)
-    left.plot(angle[zoom], surface[zoom], color=BLUE)
-    if np.ptp(motion.shaft_speed[zoom]) < 1e-3:
-        speed = float(motion.shaft_speed[window.first])
-        left.axhline(speed, color=GREY, linestyle="--", label="speed of the shaft", zorder=1)
-        _legend_above(left)
-    left.set_title("Phase plane of the elastomer's surface")
-    left.set_xlabel("Displacement [mrad]")
-    left.set_ylabel("Speed of the surface [rad/s]")
-    left.set_xlim(_limits([angle[around]], _LEAST_ANGLE))
-    left.set_ylim(_limits([surface[around], motion.shaft_speed[around]], _LEAST_SPEED))
-    right.plot(sliding[around], motion.torque[around], **pale)
-    right.plot(
-        sliding[zoom], motion.friction_torque[zoom],
-        color=ORANGE, linewidth=1.0, label="contact",
-    )  # fmt: skip
-    right.plot(sliding[zoom], motion.torque[zoom], color=BLUE, label="elastomer")
-    right.set_title("Torque against sliding speed")
-    right.set_xlabel("Sliding speed [rad/s]")
-    right.set_ylabel("Torque [Nm]")
-    right.set_xlim(_limits([sliding[around]], _LEAST_SPEED))
-    torques = [motion.torque[around], motion.friction_torque[zoom]]
-    right.set_ylim(_limits(torques, _LEAST_TORQUE))
-    _legend_above(right)
-    if np.ptp(sliding[around]) < _LEAST_SPEED:  # an orbit that is a point
-        left.plot(angle[zoom][-1:], surface[zoom][-1:], "o", color=BLUE)
-        right.plot(sliding[zoom][-1:], motion.torque[zoom][-1:], "o", color=BLUE)
 
 
 def _spectra(figure: SubFigure, run: Run, window: Window) -> None:

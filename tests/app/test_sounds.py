@@ -73,16 +73,6 @@ def test_levels_are_those_of_the_meter_of_all_tables(sounds):
     assert found["third_octaves"]["1000"] == pytest.approx(93.98, abs=0.05)
 
 
-def test_a_click_at_the_end_of_silence_has_a_level_but_no_third_octaves(tmp_path):
-    x = np.zeros(RATE)
-    x[-20:] = 1e-3
-    recording = Recording(x[None], RATE, (Channel("pressure"),), calibrated=True)
-    write_recording(tmp_path / "click.wav", recording)
-    found = bands(SoundCache(open_paths([tmp_path])).track(0), {})
-    assert found["level_a"] > -10.0
-    assert set(found["third_octaves"].values()) == {None}
-
-
 @pytest.mark.parametrize(
     "query",
     [

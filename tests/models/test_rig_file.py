@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 
 from models.bench import Microphone
 from models.errors import ParameterError
-from models.rig import Rig, damping_at, parse_spec
+from models.rig import Rig, damping_at
 from models.rig_file import changed_rig_text, load_material_rig, load_rig, material_names, rig_text
 from models.schema import remarks
 from models.sensors import Sensor, Sensors
@@ -262,8 +262,6 @@ def test_a_rig_written_over_a_base_keeps_its_structure(tmp_path):
 def test_changes_written_out_are_those_that_are_read(tmp_path):
     changes = {"damping": "x1.5", "slip_pulse.amplitude": "x2", "kinetic_torque_Nm": 3.5}
     text = changed_rig_text(
-        "fluorocarbon", changes, RIG.effects, {"slip_pulse.amplitude": 0.02}, ["note"],
-        friction=parse_spec("coulomb"),
-    )  # fmt: skip
-    expected = replace(RIG, friction=parse_spec("coulomb")).changed(**changes)
-    assert loaded(tmp_path, text) == expected
+        "fluorocarbon", changes, RIG.effects, {"slip_pulse.amplitude": 0.02}, ["note"]
+    )
+    assert loaded(tmp_path, text) == RIG.changed(**changes)

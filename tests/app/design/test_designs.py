@@ -15,21 +15,13 @@ from noise.app.design_controls import bases_of, controls_of
 from noise.app.opened import open_paths
 from noise.commands.condition import CONDITION
 from noise.commands.options import add_options
-from sim.effects import EFFECTS
 
 MATERIALS = bases_of(open_paths([]))
-ONE_AND_ALL = [
-    pytest.param(name, marks=[pytest.mark.slow] * (name not in ("fluorocarbon", "PDMS")))
-    for name in MATERIALS
-]
-
 CHANGED = [
     {},
-    {"change.damping": 1.7, "law.contact_with_memory.ageing_time": 3e-4, "change.length": 0.9},
-    {"law": "lugre", "law.lugre.stribeck_speed": 2.5, "effect.critical_torque_scatter": False},
-    {"effect.slip_pulse.amplitude": 40.0, "effect.room_reflections": True, "change.wall": 1.2},
-    {"law": "coulomb", "effect.velocity_weakening": True, "fixed": True, "interference": 0.381},
-]  # fmt: skip
+    {"change.damping": 1.7, "change.length": 0.9},
+    {"change.wall": 1.2, "fixed": True, "interference": 0.381},
+]
 
 
 def design(values, base="fluorocarbon", bases=MATERIALS):
@@ -68,31 +60,20 @@ def test_names_that_lead_elsewhere_are_refused(name, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def others(control, value):
-    """Values that a control takes beside one, near it where it is a number."""
-    if control.kind == "switch":
-        return [not value]
-    if control.kind == "choice":
-        return [one for one in control.choices if one != value]
-    factor = 0.99 if control.key == "change.kinetic_torque" else 1.01  # or it is the critical one
-    near = (value or 0.5 * control.high) * factor
-    return [near if control.least <= near <= control.most else value / factor]
-
-
-@pytest.mark.parametrize("base", ONE_AND_ALL)
-def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such(base, tmp_path):
-    every = {f"effect.{name}": True for name in EFFECTS}
+@pytest.mark.parametrize("base", ["fluorocarbon", "PDMS"])
+def test_each_control_acts_and_what_is_saved_is_read_as_such(base, tmp_path):
+    before = design({}, base)
     for control in controls_of(MATERIALS[base].rig):
-        on = every | (dict([control.only]) if control.only else {})
-        before = design(on, base)
-        for value in others(control, before.values[control.key]):
-            changed = design(on | {control.key: value}, base)
-            content = tomllib.loads(changed.text(tmp_path, "mine.toml"))
-            read = rig_from(content, tmp_path, "mine.toml")
-            assert read == changed.rig, control.key
-            of_the_rig = control.key.startswith(("change.", "effect.", "law"))
-            assert (changed.rig != before.rig) == of_the_rig, control.key
-            assert of_the_rig or changed.options != before.options, control.key
+        value = before.values[control.key]
+        factor = 0.99 if control.key == "change.kinetic_torque" else 1.01  # or it is above critical
+        changed = design(
+            {control.key: not value if control.kind == "switch" else factor * value}, base
+        )
+        content = tomllib.loads(changed.text(tmp_path, "mine.toml"))
+        assert rig_from(content, tmp_path, "mine.toml") == changed.rig, control.key
+        of_the_rig = control.key.startswith("change.")
+        assert (changed.rig != before.rig) == of_the_rig, control.key
+        assert of_the_rig or changed.options != before.options, control.key
 
 
 @pytest.mark.parametrize(
@@ -102,7 +83,6 @@ def test_each_control_acts_with_all_effects_on_and_what_is_saved_is_read_as_such
         ({"speed": float("nan")}, "must be a number"),
         ({"interference": 99}, "Interference 99: must be a number from"),
         ({"fixed": 1}, "on or off"),
-        ({"law": "magic"}, "must be one of"),
         ({"support": 20.0}, "off the plate"),
         ({"nothing": 1}, "nothing called 'nothing'"),
         ({"change.critical_torque": 0.3}, "kinetic_torque"),

@@ -1,4 +1,4 @@
-// Sliders, fields, switches and choices declared by the server.
+// Sliders, fields and switches declared by the server.
 import { made } from "../dom.js";
 
 const TICKS = 1000;
@@ -19,7 +19,7 @@ export class Controls extends EventTarget {
     this.shown.clear();
     const groups = new Map();
     for (const one of declared) {
-      if (!groups.has(one.group)) groups.set(one.group, this.#group(one.group, groups.size));
+      if (!groups.has(one.group)) groups.set(one.group, this.#group(one.group));
       groups.get(one.group).append(this.#row(one));
     }
     this.panel.replaceChildren(...[...groups.values()].map((body) => body.parentElement));
@@ -37,30 +37,13 @@ export class Controls extends EventTarget {
     return Object.fromEntries([...this.values].filter(([key, value]) => value !== this.declared.get(key).value));
   }
 
-  // Values of the operating condition.
-  get condition() {
-    return Object.fromEntries([...this.values].filter(([key]) => this.declared.get(key).condition));
-  }
-
-  // Visible differences from the base in words, of selected controls.
-  words(asked = () => true) {
-    const found = Object.keys(this.changed).filter((key) => !this.shown.get(key).row.hidden).map((key) => this.declared.get(key));
-    return found.filter(asked).map((one) => `${name(one.label)} ${this.#said(one)}`).join(", ");
-  }
-
-  #said({ key, kind, unit, choices }) {
-    const value = this.values.get(key);
-    if (kind === "number") return `${written(value)} ${unit}`.trim();
-    return kind === "choice" ? choices[value] : value ? "on" : "off";
-  }
-
   // Show resulting quantities of the bushing beside their factors.
   told(facts) {
     for (const [key, { fact }] of this.shown) if (fact) fact.textContent = facts[key.slice("change.".length)] ?? "";
   }
 
-  #group(title, nth) {
-    const box = made("details", { open: nth < 3 }), body = made("div", { className: "rows" });
+  #group(title) {
+    const box = made("details", { open: true }), body = made("div", { className: "rows" });
     box.append(made("summary", { textContent: title }), body);
     return body;
   }
@@ -70,9 +53,9 @@ export class Controls extends EventTarget {
     const id = `design-${one.key.replaceAll(".", "-")}`;
     const entry = { row, put: () => {} };
     if (one.kind === "number") {
-      const label = made("label", { htmlFor: `${id}-slider`, textContent: name(one.label), title: one.meaning });
+      const label = made("label", { htmlFor: `${id}-slider`, textContent: one.label, title: one.meaning });
       const slider = made("input", { id: `${id}-slider`, type: "range", min: 0, max: TICKS, step: 1, oninput: () => this.#input(one, rounded(valueAt(one, slider.value / TICKS), one)) });
-      const field = made("input", { id, type: "number", min: one.least, max: one.most, step: "any", ariaLabel: [name(one.label), one.unit].filter(Boolean).join(", ") });
+      const field = made("input", { id, type: "number", min: one.least, max: one.most, step: "any", ariaLabel: [one.label, one.unit].filter(Boolean).join(", ") });
       const unit = made("span", { className: "unit", textContent: one.unit });
       field.addEventListener("change", () => {
         const value = Number(field.value);
@@ -86,15 +69,10 @@ export class Controls extends EventTarget {
       };
       row.append(label, slider, field, unit);
       if (one.key.startsWith("change.")) row.append(entry.fact = made("span", { className: "fact" }));
-    } else if (one.kind === "switch") {
+    } else {
       const box = made("input", { id, type: "checkbox", onchange: () => this.#input(one, box.checked) });
       entry.put = (value) => { box.checked = value; };
-      row.append(made("label", { htmlFor: id, textContent: name(one.label), title: one.meaning }), box);
-    } else {
-      const options = Object.entries(one.choices).map(([value, textContent]) => made("option", { value, textContent }));
-      const list = made("select", { id, onchange: () => this.#input(one, list.value) }, ...options);
-      entry.put = (value) => { list.value = value; };
-      row.append(made("label", { htmlFor: id, textContent: name(one.label), title: one.meaning }), list);
+      row.append(made("label", { htmlFor: id, textContent: one.label, title: one.meaning }), box);
     }
     this.shown.set(one.key, entry);
     entry.put(one.value);
@@ -116,13 +94,10 @@ export class Controls extends EventTarget {
   // Hide controls that have no effect.
   #reveal() {
     for (const [key, { row }] of this.shown) {
-      const { only } = this.declared.get(key);
-      row.hidden = Boolean(only) && this.values.get(only[0]) !== only[1];
+      row.hidden = Boolean(this.values.get(this.declared.get(key).unless));
     }
   }
 }
-
-const name = (label) => label.charAt(0).toUpperCase() + label.slice(1);
 
 const valueAt = ({ low, high, log }, share) => (log ? low * (high / low) ** share : low + (high - low) * share);
 

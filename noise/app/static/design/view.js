@@ -40,7 +40,6 @@ export async function mount(panel) {
   const controls = new Controls(rows), sound = new Sound(about), drawings = new Drawings(about, sound, torque, spectrum);
   const design = { sound, controls, drawings, about };
   panel.design = design;
-  const baseOf = (id) => about.bases.find((one) => one.id === id);
   const states = {}; // by slot: { base, values }
   let slot = "A", asked = 0, shown = null; // the base whose controls are shown
   let heardAt = 0; // when the newest design was first heard [ms]
@@ -115,13 +114,12 @@ export async function mount(panel) {
     changed();
   }
 
-  // Choose another base: keep the condition and drop other changes.
+  // Choose another base: condition and factors stay.
   async function rebase() {
-    const { condition } = controls, left = baseOf(shown), dropped = controls.words(({ condition: stays }) => !stays);
+    const values = Object.fromEntries(controls.values);
     if (!await take(base.value)) return;
-    controls.put(condition);
+    controls.put(values);
     changed();
-    notice.textContent = dropped ? `Dropped with ${left.name}: ${dropped}.` : "";
   }
   design.put = put;
   design.choose = choose;
@@ -132,10 +130,8 @@ export async function mount(panel) {
     notice.textContent = `${other()} is now a copy of ${slot}.`;
   }
   function toBase() {
-    const words = controls.words();
     controls.put({});
     changed();
-    notice.textContent = words ? `Dropped: ${words}.` : "";
   }
   scale.addEventListener("change", () => {
     const asked = Number(scale.value);

@@ -22,9 +22,6 @@ export class Setup {
     this.goingOn = made("section", { hidden: true }, made("h2", { textContent: "Go on" }), this.going);
     this.question = made("input", { type: "text", value: "Which annoys more?", maxLength: 200, className: "wide" });
     this.listener = made("input", { type: "text", maxLength: 200, placeholder: "optional" });
-    this.played = made("select", {},
-      made("option", { value: "one gain", textContent: "as recorded, all at one gain" }),
-      made("option", { value: "equal loudness", textContent: "at equal loudness" }));
     this.kind = made("select", { onchange: () => this.#list() }, ...KINDS.map((kind) => made("option", { value: kind === "all" ? "" : kind, textContent: kind })));
     this.find = made("input", { type: "search", placeholder: "by name", oninput: () => { clearTimeout(this.wait); this.wait = setTimeout(() => this.#list(), 150); } });
     this.sounds = made("ul", { className: "sounds" });
@@ -37,7 +34,7 @@ export class Setup {
     element.append(this.goingOn, made("section", {},
       made("h2", { textContent: "New jury" }),
       made("p", { className: "soft", textContent: "You hear two sounds at a time, without names and in random order, and choose one. Your votes place all sounds on a scale." }),
-      made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener), field("Played", this.played)),
+      made("div", { className: "fields" }, field("Question", this.question), field("Listener", this.listener)),
       made("fieldset", {}, made("legend", { textContent: "Sounds" }),
         made("div", { className: "line" }, field("With", this.kind), field("Find", this.find), all, none, this.count),
         this.sounds),
@@ -104,7 +101,7 @@ export class Setup {
     this.element.inert = true; // while all sounds are measured
     this.plan.textContent = "Measuring the sounds ...";
     try {
-      const { jury } = await api("juries", { sounds: [...this.chosen], comparisons: Number(this.number.value), question: this.question.value, listener: this.listener.value, played: this.played.value });
+      const { jury } = await api("juries", { sounds: [...this.chosen], comparisons: Number(this.number.value), question: this.question.value, listener: this.listener.value });
       await this.goes.voting(jury);
     } finally {
       this.element.inert = false;
