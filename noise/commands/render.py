@@ -1,21 +1,19 @@
 """``bushing-noise render``: recordings or conditions into audible WAV files.
 
-Rig files and conditions in quotes are simulated. They take missing options from the call, so that
-two designs are compared at the same condition with the same random numbers. Invalid inputs are
-refused before the first simulation.
+Rig files and materials are simulated at the condition of the options, so that two designs are
+compared at the same condition with the same random numbers. Invalid inputs are refused before the
+first simulation.
 """
 
 from __future__ import annotations
 
-import re
-import shlex
-from argparse import ArgumentParser, ArgumentTypeError, Namespace
-from collections.abc import Callable, Mapping
+from argparse import ArgumentTypeError, Namespace
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
@@ -25,7 +23,6 @@ from noise.commands.condition import CONDITION, run_arguments, stated_options, w
 from noise.commands.options import (
     CALIBRATION,
     Option,
-    add_options,
     band,
     check_folder,
     full_scale_of,
@@ -37,9 +34,6 @@ if TYPE_CHECKING:
     from noise.audio.render import Measured
 
 _LOWEST, _NARROWEST = 1.0, 1.01  # lower end [Hz], and upper over lower end, for stable filters
-
-_ALTERNATIVES = {"speed": "oscillate", "oscillate": "speed"}
-"""Options that replace each other."""
 
 
 def _band(text: str) -> tuple[float, float]:
@@ -102,10 +96,7 @@ class _Source:
 def _sources(options: Namespace) -> list[_Source]:
     """Return the sound sources of the call with unique names, and print their notes."""
     condition = ["--" + name.replace("_", "-") for name in stated_options(options)]
-    simulated = [
-        text for text in options.inputs if _is_condition(text) or text.lower().endswith(".toml")
-    ]
-    recorded = [text for text in options.inputs if text not in simulated]
+    recorded = [text for text in options.inputs if not _is_rig(text)]
     if not options.inputs and not condition:
         raise ParameterError(
             "render needs a recording, or a condition such as --speed 5 to simulate"
@@ -114,8 +105,8 @@ def _sources(options: Namespace) -> list[_Source]:
         option = "--calibrator" if options.full_scale is None else "--full-scale"
         raise ParameterError(f"{option} is the calibration of a recording; none is given")
     if "" in options.inputs:
-        raise ParameterError("one INPUT is empty; give a recording, a folder, or a condition")
-    if recorded and condition and not simulated:
+        raise ParameterError("one INPUT is empty; give a recording, a folder, or a rig file")
+    if condition and recorded and len(recorded) == len(options.inputs):
         raise ParameterError(
             f"{condition[0]} describes a run to simulate, but {recorded[0]} is already recorded; "
             "give one or the other"
@@ -128,8 +119,8 @@ def _sources(options: Namespace) -> list[_Source]:
         if text in recorded:
             sources += _recorded(Path(text), full_scale, names)
         else:
-            name, values = _simulated(text, options)
-            source, its_notes = _run(_unique(name, names), values)
+            name = Path(text).stem if text else options.out.name.removesuffix(".wav")
+            source, its_notes = _run(_unique(name, names), _with_rig(options, text))
             sources.append(source)
             notes += its_notes
     note(*dict.fromkeys(notes))
@@ -144,9 +135,11 @@ def _unique(name: str, names: set[str]) -> str:
     return unique
 
 
-def _is_condition(text: str) -> bool:
-    """Whether an input is a condition in quotes."""
-    return text.lstrip().startswith("-")
+def _is_rig(text: str) -> bool:
+    """Whether an input is a rig file or a material."""
+    from models.rig_file import material_of
+
+    return text.lower().endswith(".toml") or material_of(Path(text)) is not None
 
 
 def _recorded(path: Path, full_scale: float | None, names: set[str]) -> list[_Source]:
@@ -173,38 +166,13 @@ def _read(path: Path, full_scale: float | None) -> Recording:
         return pressure_recording(recording)
 
 
-class _ConditionParser(ArgumentParser):
-    """Parser of a condition in quotes, which is its ``prog``."""
-
-    def error(self, message: str) -> NoReturn:
-        """Raise an error of parsing as ParameterError."""
-        raise ParameterError(f"condition {self.prog!r}: {message.removeprefix('argument ')}")
-
-
-def _simulated(text: str, options: Namespace) -> tuple[str, Namespace]:
-    """Return name and condition of a rig file, of a condition, or of the options alone."""
+def _with_rig(options: Namespace, text: str) -> Namespace:
+    """Return the options of a condition with a rig file or a material as the rig, if stated."""
     if not text:
-        return options.out.name.removesuffix(".wav"), options
-    if not _is_condition(text):
-        if options.rig is not None:
-            raise ParameterError(f"--rig {options.rig} and {text} are both rig files; give one")
-        return Path(text).stem, _over(options, {"rig": Path(text)})
-    parser = _ConditionParser(prog=text, add_help=False, allow_abbrev=False)
-    add_options(parser, [CONDITION])
-    try:
-        words = shlex.split(text)
-    except ValueError as error:
-        raise ParameterError(f"condition {text!r}: {error}") from None
-    values = stated_options(parser.parse_args(words))
-    return re.sub(r"[^\w.]+", "-", text).strip("-."), _over(options, values)
-
-
-def _over(options: Namespace, values: Mapping[str, Any]) -> Namespace:
-    """Return the options of a condition, with some values replaced."""
-    names = [row.attribute for row in CONDITION.rows]
-    merged = {name: getattr(options, name) for name in (*names, "seed")}
-    merged |= {_ALTERNATIVES[name]: None for name in values if name in _ALTERNATIVES}
-    return Namespace(**(merged | dict(values)))
+        return options
+    if options.rig is not None:
+        raise ParameterError(f"--rig {options.rig} and {text} are both rigs; give one")
+    return Namespace(**(vars(options) | {"rig": Path(text)}))
 
 
 def _run(name: str, options: Namespace) -> tuple[_Source, tuple[str, ...]]:
