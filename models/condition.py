@@ -167,3 +167,36 @@ def same_support(one: float, other: float) -> bool:
     (True, False, True)
     """
     return math.isclose(one, other, rel_tol=_SAME)
+
+
+def support_stiffness(text: str) -> float:
+    """Parse a support stiffness [Nm/rad]; ``fixed`` is infinite.
+
+    Raises
+    ------
+    ParameterError
+        The text is neither a positive number nor ``fixed``.
+
+    Examples
+    --------
+    >>> support_stiffness("2214"), support_stiffness("fixed")
+    (2214.0, inf)
+    """
+    try:
+        stiffness = math.inf if text == "fixed" else float(text)
+    except ValueError:
+        stiffness = math.nan
+    if not stiffness > 0.0 or (math.isinf(stiffness) and text != "fixed"):
+        raise ParameterError("supports are stiffnesses in Nm/rad, or fixed")
+    return stiffness
+
+
+def support_name(support: float) -> str:
+    """Return the name of a support stiffness [Nm/rad] in keys and file names.
+
+    Examples
+    --------
+    >>> support_name(2214.0), support_name(math.inf)
+    ('2214', 'fixed')
+    """
+    return "fixed" if math.isinf(support) else f"{support:.6g}"

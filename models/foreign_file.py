@@ -141,7 +141,10 @@ def refusing(
     except RecursionError as raised:
         raise error(f"{where}: is no {what} (too deep)") from raised
     except Exception as raised:  # libraries raise exceptions of any type
-        raise error(f"{where}: is damaged or no {what} ({_reason(raised)})") from raised
+        reason = f"lacks {raised}" if isinstance(raised, KeyError) else one_line(raised)
+        if not reason or not isinstance(raised, ValueError | KeyError):
+            reason = f"{type(raised).__name__}: {reason}".removesuffix(": ")
+        raise error(f"{where}: is damaged or no {what} ({reason})") from raised
 
 
 def check_plain_file(path: Path) -> None:
@@ -224,15 +227,6 @@ def parse_json(text: str | bytes) -> Any:
         return json.loads(text)
     except RecursionError:
         raise ExcessError("holds lists or tables too deep in one another") from None
-
-
-def _reason(raised: Exception) -> str:
-    if isinstance(raised, KeyError):
-        return one_line(f"lacks {raised}")
-    message = one_line(raised)
-    if message and isinstance(raised, ValueError):
-        return message
-    return f"{type(raised).__name__}: {message}" if message else type(raised).__name__
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:

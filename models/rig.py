@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from models.bench import Beams, Microphone, Plate
 from models.bushing import HARDNESS, Sleeve, TemperatureDependence, shore_modulus
+from models.condition import support_name, support_stiffness
 from models.errors import ParameterError
 from models.schema import (
     Entry,
@@ -137,39 +138,6 @@ class _BySupport(Entry):
 
     def write(self, value: Mapping[float, float]) -> dict[str, float]:
         return {support_name(support): each for support, each in value.items()}
-
-
-def support_stiffness(text: str) -> float:
-    """Parse a support stiffness [Nm/rad]; ``fixed`` is infinite.
-
-    Raises
-    ------
-    ParameterError
-        The text is neither a positive number nor ``fixed``.
-
-    Examples
-    --------
-    >>> support_stiffness("2214"), support_stiffness("fixed")
-    (2214.0, inf)
-    """
-    try:
-        stiffness = math.inf if text == "fixed" else float(text)
-    except ValueError:
-        stiffness = math.nan
-    if not stiffness > 0.0 or (math.isinf(stiffness) and text != "fixed"):
-        raise ParameterError("supports are stiffnesses in Nm/rad, or fixed")
-    return stiffness
-
-
-def support_name(support: float) -> str:
-    """Return the name of a support stiffness [Nm/rad] in keys and file names.
-
-    Examples
-    --------
-    >>> support_name(2214.0), support_name(math.inf)
-    ('2214', 'fixed')
-    """
-    return "fixed" if math.isinf(support) else f"{support:.6g}"
 
 
 @dataclass(frozen=True)

@@ -208,7 +208,14 @@ def _layered(content: Mapping[str, Any], folder: Path, where: str, chain: tuple[
     entries = {key: value for key, value in content.items() if key not in _APART}
     if "base" in content:
         base = _base(as_text(content["base"], "base", where), folder, where, chain)
-        _check_name(entries, base, where)
+        if "material" in entries:
+            shipped = shipped_name(as_text(entries["material"], "material", where))
+            if shipped not in (None, base.material):
+                raise ParameterError(
+                    f"{where}: material = {shipped!r} contradicts base, which is of "
+                    f"{base.material}; leave material out"
+                )
+            entries["material"] = shipped or entries["material"]
     elif "fit" in entries:
         base = _own_bushing(entries, where)
     else:
@@ -248,19 +255,6 @@ def _base(named: str, folder: Path, where: str, chain: tuple[Path, ...]) -> Rig:
         )
     below = f"{where}: base {named}"
     return _layered(read_toml(path, below), path.parent, below, (*chain, path))
-
-
-def _check_name(entries: dict[str, Any], base: Rig, where: str) -> None:
-    """Raise if a base of one material has the name of another."""
-    if "material" not in entries:
-        return
-    shipped = shipped_name(as_text(entries["material"], "material", where))
-    if shipped is not None and shipped != base.material:
-        raise ParameterError(
-            f"{where}: material = {entries['material']!r} contradicts base, which is of "
-            f"{base.material}; leave material out"
-        )
-    entries["material"] = shipped or entries["material"]
 
 
 def _own_bushing(entries: Mapping[str, Any], where: str) -> Rig:

@@ -68,7 +68,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # file names may not fit the encoding of the terminal
             stream.reconfigure(errors="backslashreplace")
     with warnings.catch_warnings():
-        warnings.showwarning = _show_warning
+        warnings.showwarning = lambda message, *_, **__: note(str(message))
         try:
             return _report_errors(arguments)
         except BrokenPipeError:
@@ -220,8 +220,3 @@ def _with_negative_values(arguments: Sequence[str]) -> list[str]:
         else:
             joined.append(argument)
     return joined
-
-
-def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
-    """Print a Python warning as a note."""
-    note(str(message))

@@ -12,7 +12,6 @@ frequencies, which dominate a torque, do not change. The measured phase is used;
 would lose the delay of the sound.
 """
 
-import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -25,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from models.bench import HIGHEST_PLATE_FREQUENCY
-from models.condition import CONDITION, same_support
+from models.condition import CONDITION, same_support, support_name
 from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.schema import ReadBy
@@ -146,10 +145,10 @@ def with_measured(
             pressure = measured_impulse_response(transfer, rate, pressure.size)
         return replace(modelled, torque_to_acceleration=acceleration, torque_to_pressure=pressure)
     if measured:
-        others = ", ".join(_named(entry.support_stiffness) for entry in measured)
+        others = ", ".join(support_name(entry.support_stiffness) for entry in measured)
         warnings.warn(
-            f"no response was measured with the support {_named(support_stiffness)}, only with "
-            f"{others}; it is modelled",
+            f"no response was measured with the support {support_name(support_stiffness)} Nm/rad, "
+            f"only with {others}; it is modelled",
             stacklevel=2,
         )
     return modelled
@@ -345,7 +344,3 @@ def _continued(
         beyond = np.full(frequencies.size, complex(np.mean(h.real)))
     mixed = np.clip((frequencies - 0.5 * (first + last)) / (0.5 * (last - first)), 0.0, 1.0)
     return np.asarray(response * (1.0 - mixed) + beyond * mixed)
-
-
-def _named(support_stiffness: float) -> str:
-    return "fixed" if math.isinf(support_stiffness) else f"{support_stiffness:g} Nm/rad"

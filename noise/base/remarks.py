@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from models.condition import CONDITION
+from models.condition import CONDITION, support_name
 from models.schema import remarks
 
 if TYPE_CHECKING:
@@ -54,61 +54,40 @@ def use_remarks(
     ['speed 15 rad/s is above 13 rad/s, the highest speed to which fluorocarbon was fitted']
     """
     finite = [stiffness for stiffness in support_stiffness if math.isfinite(stiffness)]
-    speed_remark = _speed_remark(rig, speed)
-    fit = CONDITION["interference"]
+    fit, fastest = CONDITION["interference"], max(abs(value) for value in speed)
+    speed_remark = CONDITION["speed"].remark(*speed)
+    if fastest > rig.fastest_fitted * (1.0 + 1e-9):
+        speed_remark = (
+            f"speed {fastest:g} rad/s is above {rig.fastest_fitted:.4g} rad/s, the highest speed "
+            f"to which {rig.material} was fitted"
+        )
     lines = [
         *remarks(rig),
-        speed_remark or CONDITION["speed"].remark(*speed),
+        speed_remark,
         fit.remark(*map(fit.of, interference)),
         CONDITION["support_stiffness"].remark(*finite),
         CONDITION["temperature"].remark(*temperature),
-        _support_remark(rig, support_stiffness),
-        _anchor_remark(rig, finite),
     ]
-    return [text for text in dict.fromkeys(lines) if text]
-
-
-def _speed_remark(rig: Rig, speeds: Sequence[float]) -> str:
-    """Return a remark on speeds [rad/s] above those of the measurements."""
-    fastest = max(abs(value) for value in speeds)
-    if fastest <= rig.fastest_fitted * (1.0 + 1e-9):
-        return ""
-    return (
-        f"speed {fastest:g} rad/s is above {rig.fastest_fitted:.4g} rad/s, the highest speed to "
-        f"which {rig.material} was fitted"
-    )
-
-
-def _support_remark(rig: Rig, supports: Sequence[float]) -> str:
-    """Return a remark on support stiffnesses [Nm/rad] without a damping of their own."""
     known = sorted({support for fit in rig.fits for support in fit.damping})
-    other = [k for k in supports if not any(math.isclose(k, one, rel_tol=0.01) for one in known)]
-    if len(known) == 1 or not other:  # one damping for every support
-        return ""
-    return (
-        f"damping is given for supports of {', '.join(map(_stiffness, known))}; for "
-        f"{', '.join(map(_stiffness, other))} Nm/rad it is interpolated, or held beyond these"
-    )
+    others = [
+        k for k in support_stiffness if not any(math.isclose(k, one, rel_tol=0.01) for one in known)
+    ]
+    if len(known) > 1 and others:
+        lines.append(
+            f"damping is given for supports of {', '.join(map(support_name, known))}; for "
+            f"{', '.join(map(support_name, others))} Nm/rad it is interpolated, or held beyond "
+            "these"
+        )
+    if math.isfinite(min(rig.beams.anchor_rotation, rig.beams.anchor_translation)):
+        from models.structure.beams import on_anchors
 
-
-def _anchor_remark(rig: Rig, supports: Sequence[float]) -> str:
-    """Return a remark on support stiffnesses [Nm/rad] that elastic anchors do not allow."""
-    if math.isinf(rig.beams.anchor_rotation) and math.isinf(rig.beams.anchor_translation):
-        return ""
-    from models.structure.beams import on_anchors
-
-    rigid = [k for k in supports if on_anchors(rig.beams, k, rig.clamp_inertia) is not rig.beams]
-    if not rigid:
-        return ""
-    return (
-        f"on elastic anchors, beams for {', '.join(map(_stiffness, rigid))} Nm/rad would have more "
-        "inertia than the clamp itself; their anchors are taken as rigid"
-    )
-
-
-def _stiffness(value: float) -> str:
-    """Return a support stiffness [Nm/rad] as text."""
-    return "fixed" if math.isinf(value) else f"{value:g}"
+        rigid = [k for k in finite if on_anchors(rig.beams, k, rig.clamp_inertia) is not rig.beams]
+        if rigid:
+            lines.append(
+                f"on elastic anchors, beams for {', '.join(map(support_name, rigid))} Nm/rad would "
+                "have more inertia than the clamp itself; their anchors are taken as rigid"
+            )
+    return [text for text in dict.fromkeys(lines) if text]
 
 
 def temperature_remark(rig: Rig, *temperatures: float | None) -> str:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from models.condition import CONDITION as QUANTITIES, FIXED
+from models.condition import CONDITION as QUANTITIES, Condition, support_stiffness
 from models.errors import ParameterError, naming
 from models.foreign_file import LARGEST_TEXT, reading
 from models.rig import LawSpec, Rig, parse_spec
@@ -75,11 +75,9 @@ def swing(text: str) -> tuple[float, float]:
 
 def _support_stiffness(text: str) -> float:
     """Parse a support stiffness [Nm/rad] or ``fixed``."""
-    if text.strip().lower() == "fixed":
-        return FIXED
     try:
-        return number(above=0.0)(text)
-    except ArgumentTypeError:
+        return support_stiffness(text.strip().lower())
+    except ParameterError:
         raise ArgumentTypeError(
             f"is {text!r}, expected a number above 0 in Nm/rad, or fixed"
         ) from None
@@ -168,10 +166,8 @@ def run_arguments(
         "library": library,
     }
     notes = _remarks(options, arguments)
-    stiffness = arguments["support_stiffness"]
-    support = "clamp fixed" if math.isinf(stiffness) else f"{stiffness:g} Nm/rad"
-    say(f"simulating {seconds:g} s: {turning}, {interference_mm:g} mm, {support}, {rig.material}")
-
+    where = Condition(None, interference_mm / 1e3, arguments["support_stiffness"], rig.material)
+    say(f"simulating {seconds:g} s: {', '.join([turning, *where.words])}")
     import numpy as np
 
     from sim.acquisition import Acquisition
