@@ -68,24 +68,6 @@ def shown(page):
     return [text.strip() for text in page.locator(ROW).all_text_contents()]
 
 
-def test_all_rows_are_there_and_the_last_is_reached(page):
-    assert page.locator(".rows [role=option]").count() == MANY
-    page.locator(".rows").evaluate("(rows) => { rows.scrollTop = rows.scrollHeight; }")
-    page.get_by_text("run0999.wav").click()
-    page.locator(CHOSEN).filter(has_text="run0999.wav").wait_for()
-
-
-def test_a_label_shows_every_recording_that_it_is_in(page, app):
-    button = page.get_by_role("button", name="squeal", exact=False).first
-    number = app.json("api/recordings?label=squeal")["counts"]["squeal"]
-    assert button.inner_text().split() == ["squeal", f"{number:,}"]
-    button.click()
-    page.wait_for_function("(n) => list.rows.length === n", arg=number)
-    assert button.get_attribute("aria-pressed") == "true"
-    assert all("squeal" in text for text in shown(page))
-    assert any("+ squeal" in text for text in shown(page))
-
-
 def test_a_name_is_found_and_one_that_is_markup_harms_nobody(page):
     page.get_by_role("searchbox").fill("onerror")
     page.wait_for_function("() => list.rows.length === 1")

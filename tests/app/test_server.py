@@ -14,7 +14,7 @@ import pytest
 
 from noise.cli import main
 from tests.helpers.labelled_folder import made_row, write_folder
-from tests.helpers.opened_app import PATIENCE, opened_app, served_app, started_app
+from tests.helpers.opened_app import PATIENCE, served_app, started_app
 
 NAMES = ("a.wav", "b.wav", "<img src=x onerror=alert(1)>.wav")
 
@@ -146,12 +146,6 @@ def test_a_body_that_is_none_is_refused_and_the_server_lives(app, body):
     asked.request("POST", f"/api/undo?token={app.token}", body)
     assert asked.getresponse().status == 400
     assert app.json("api/recordings")["state"]["total"] == 3
-
-
-def test_the_command_ends_well_when_told_by_key(tmp_path):
-    with opened_app(write_folder(tmp_path, ("a.wav",))) as app:
-        app.process.send_signal(signal.SIGINT)
-        assert app.process.wait(PATIENCE) == 0
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, "button"])

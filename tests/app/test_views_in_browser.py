@@ -19,26 +19,3 @@ def test_the_token_stays_in_the_tab_and_the_tasks_leave_quit_in_reach(browser, t
         page.locator(".recording-list .row").first.wait_for()
         page.go_back()
         assert "token" not in page.url
-
-
-MAP = """
-<figure class="map"><div class="axes">
-<div class="up"></div><div class="plot"><svg viewBox="0 0 600 240"></svg></div>
-</div></figure>
-"""
-
-
-def test_the_map_of_a_design_keeps_its_height_where_recordings_were_opened(browser, tmp_path):
-    with served_app(write_tones(tmp_path)) as app:
-        page = browser.new_page()
-        page.goto(app.address)
-        page.locator(".recording-list .row").first.wait_for()
-        whole, plot = page.evaluate(
-            """(map) => {
-                document.body.insertAdjacentHTML("beforeend", map);
-                const parts = document.querySelectorAll(".map .axes, .map .plot");
-                return [...parts].map((part) => part.getBoundingClientRect().height);
-            }""",
-            MAP,
-        )
-        assert whole == plot > 100.0

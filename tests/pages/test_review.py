@@ -135,13 +135,6 @@ def test_of_several_channels_of_sound_the_first_is_heard_and_the_page_says_so(tm
     assert np.fft.rfftfreq(page.sound("stereo")[0].size, 1 / RATE)[spectrum.argmax()] < 60.0
 
 
-def test_a_rendering_beside_its_recording_is_left_out(campaign):
-    (campaign / "audio").mkdir()
-    for name in ("creak.wav", "creak.json"):
-        (campaign / "audio" / name).write_bytes((campaign / "recordings" / name).read_bytes())
-    assert review(campaign, campaign / "review.html").sounds == 3
-
-
 def test_a_bad_file_is_named_on_the_page_and_the_exit_code_is_1(campaign, capsys):
     (campaign / "recordings" / "broken.wav").write_bytes(b"no sound")
     (campaign / "bad.csv").write_text("file,label\na.wav,bang\n", encoding="utf-8")

@@ -82,27 +82,6 @@ def test_a_change_that_cannot_be_is_told_and_the_run_goes_on_as_it_was(player):
     )
 
 
-def test_what_cannot_be_carried_to_the_microphone_is_told_once_of_each_change(player):
-    light = {"base": "fluorocarbon", "values": {"change.clamp_inertia": 0.2}}
-    heard(player, [PLAIN, light])
-    until = time.monotonic() + 6 * PATIENCE  # its process lets all others go first
-    i = 2
-    while (answer := told(player.block(1)))[0] is None and time.monotonic() < until:
-        i += 1
-        time.sleep(0.05)
-    assert answer[0] == 1
-    assert "more inertia than the clamp" in answer[1]
-    assert answer[2]["sequence"] == i
-    assert told(player.block(1))[0] is None
-    light["values"]["speed"] = 6.0
-    player.change(1, 2, setting(light))
-    serial, why, block = told(player.block(1))
-    assert (serial, why) == (2, answer[1])
-    assert block["serial"] == 2
-    heard(player, [PLAIN], first=block["sequence"] + 1)
-    assert told(player.block(1))[0] is None
-
-
 @pytest.mark.parametrize(
     "said",
     [
