@@ -298,8 +298,8 @@ def bradley_terry(share: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(value - value.mean(axis=-1, keepdims=True))
 
 
-def scale(jury: Jury) -> tuple[list[Row], list[str]]:
-    """Return the Bradley-Terry scale of a jury, highest first, and remarks.
+def scale(jury: Jury) -> list[Row]:
+    """Return the Bradley-Terry scale of a jury, highest first; sounds without a vote come last.
 
     Intervals at 95 % are those of a bootstrap: votes on the same pairs are drawn anew by the values
     found. They say how surely these votes place a sound, not how another person would vote.
@@ -311,7 +311,7 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
     Examples
     --------
     >>> pairs = ("calm", "loud"), ("loud", "calm")
-    >>> rows, _ = scale(Jury(1, "", "Which is louder?", "one gain", pairs, ("second", "first")))
+    >>> rows = scale(Jury(1, "", "Which is louder?", "one gain", pairs, ("second", "first")))
     >>> [row["sound"] for row in rows], rows[0]["chosen"], rows[0]["not_chosen"]
     (['loud', 'calm'], 2, 0)
     """
@@ -331,7 +331,7 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
     joined = np.asarray(wins + wins.T + ties) > 0.0
     compared: list[bool] = np.any(joined, axis=1).tolist()
     order = sorted(range(n), key=lambda one: (not compared[one], -value[one], names[one]))
-    rows: list[Row] = [
+    return [
         {
             "sound": names[one],
             **dict.fromkeys(("value", "low_95", "high_95")),
@@ -346,10 +346,6 @@ def scale(jury: Jury) -> tuple[list[Row], list[str]]:
         }
         for one in order
     ]
-    missing = [name for name, there in zip(names, compared, strict=True) if not there]
-    if not jury.votes or not missing:
-        return rows, []
-    return rows, [f"not compared yet, so not on the scale: {', '.join(missing)}"]
 
 
 def in_words(rows: Sequence[Row]) -> str:

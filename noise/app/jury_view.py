@@ -119,12 +119,9 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def result(request: Request) -> Response:
         jury = jury_of(request)
-        rows, remarks = scale(jury)
-        return JSONResponse(
-            state(jury)
-            | {"sounds": rows, "words": in_words(rows), "remarks": remarks}
-            | {"voted": len(jury.votes)}
-        )
+        rows = scale(jury)
+        answer = {"sounds": rows, "words": in_words(rows), "voted": len(jury.votes)}
+        return JSONResponse(state(jury) | answer)
 
     one = "/api/juries/{jury:int}"
     return [

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -316,26 +315,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
             }
         )
 
-    one_at_a_time = Lock()  # or what is seen of the next recording waits for them all
-
-    def of_track(
-        answer: Callable[[Track, Query], Response], lock: AbstractContextManager[object]
-    ) -> Callable[[Request], Response]:
+    def of_track(answer: Callable[[Track, Query], Response]) -> Callable[[Request], Response]:
         def endpoint(request: Request) -> Response:
             query = request.query_params
-            track = sounds.track(request.path_params["id"], query.get("channel", ""))
-            with lock:
-                return answer(track, query)
+            return answer(sounds.track(request.path_params["id"], query.get("channel", "")), query)
 
         return endpoint
-
-    def measured(answer: Callable[[Track, Query], Facts]) -> Callable[[Request], Response]:
-        return of_track(lambda *given: JSONResponse(answer(*given)), one_at_a_time)
-
-    def drawn(
-        answer: Callable[[Track, Query], tuple[Facts, NDArray[np.generic]]],
-    ) -> Callable[[Request], Response]:
-        return of_track(lambda *given: _framed(*answer(*given)), nullcontext())
 
     def audio(*given: Any) -> Response:
         return Response(wav(*given), media_type="audio/wav")
@@ -343,10 +328,10 @@ def routes(opened: Opened) -> list[BaseRoute]:
     at = "/api/sounds/{id:int}"
     return [
         Route(at, about),
-        Route(f"{at}/audio", of_track(audio, nullcontext())),
-        Route(f"{at}/outline", drawn(outline)),
-        Route(f"{at}/spectrogram", drawn(spectrogram)),
-        Route(f"{at}/bands", measured(bands)),
+        Route(f"{at}/audio", of_track(audio)),
+        Route(f"{at}/outline", of_track(lambda *given: _framed(*outline(*given)))),
+        Route(f"{at}/spectrogram", of_track(lambda *given: _framed(*spectrogram(*given)))),
+        Route(f"{at}/bands", of_track(lambda *given: JSONResponse(bands(*given)))),
     ]
 
 

@@ -284,7 +284,7 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
         "level": _number(row.get("level_dba"), ".1f", "dB(A)")
         or _number(row.get("level_db"), ".1f", "dB")
         or _number(row.get("level_dbfs"), ".1f", "dBFS"),
-        "fast": _number(row.get("l_afmax_dba"), ".1f", "dB(A) Fast at most"),
+        "fast": _number(row.get("l_afmax_dba"), ".1f", "dB(A) Fast maximum"),
     }
     return {name: fact for name, fact in facts.items() if fact is not None}
 

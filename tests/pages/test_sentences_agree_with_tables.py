@@ -340,7 +340,7 @@ def test_the_words_of_a_jury_are_those_of_its_table():
         rng = np.random.default_rng(seed)
         pairs = random_pairs("abcdef"[: int(rng.integers(2, 7))], rng)
         votes = rng.choice(list(VOTES), int(rng.integers(1, len(pairs) + 1))).tolist()
-        rows, _ = scale(Jury(1, "", "", "", tuple(pairs), tuple(votes)))
+        rows = scale(Jury(1, "", "", "", tuple(pairs), tuple(votes)))
         words, placed = in_words(rows), [row for row in rows if row["value"] is not None]
         for place, row in (("first", placed[0]), ("last", placed[-1])):
             if found := re.search(rf"(\w) comes {place}: chosen in (\d+) of (\d+)", words):

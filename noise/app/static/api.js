@@ -37,11 +37,12 @@ async function request(path, body, tell = told) {
     tell(reason, kind);
     throw new Error(reason);
   }
-  if (told.by === kind || told.by === "") told("");
+  if (told.by === kind || !told.by) told("");
   return answer;
 }
 
-// An error is cleared when the same kind of request succeeds; kind "" means that the program does not answer.
+// An error is cleared when the same kind of request succeeds, a hint (kind null) or that the program does not
+// answer (kind "") by the next success.
 export function told(text, by = null) {
   told.by = by;
   document.getElementById("status").textContent = text;

@@ -41,7 +41,7 @@ async function show(name) {
   history.replaceState(null, "", `${location.pathname}#${name}`);
   if (!mounted[name]) {
     mounted[name] = import(`./${name}/view.js`).then((view) => view.mount(panelOf(name)));
-    mounted[name].catch((error) => told(`This view could not start: ${error.message}`));
+    mounted[name].catch((error) => told(`This view could not start: ${error.message}`, "view"));
   }
   const view = await mounted[name];
   if (shown !== name) { // another view was chosen meanwhile

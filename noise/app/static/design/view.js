@@ -201,7 +201,7 @@ function words({ label, frequency_hz: frequency, level_dba: level, l_afmax_dba: 
   const tone = label === "none" || !frequency ? [] : [`${frequency.toFixed(0)} Hz`];
   const played = most - 20 * Math.log10(fullScale / 2e-5), quiet = played < -48;
   const inaudible = level < 0 ? "; inaudible, as it is below 0 dB(A)" : quiet ? "; nearly inaudible at this playback level" : "";
-  return [[called, ...tone, `${level.toFixed(0)} dB(A)`].join(", "), `Last second: ${level.toFixed(1)} dB(A), at most ${most.toFixed(1)} dB(A) Fast, re 20 µPa${inaudible}`];
+  return [[called, ...tone, `${level.toFixed(0)} dB(A)`].join(", "), `Last second: ${level.toFixed(1)} dB(A), Fast maximum ${most.toFixed(1)} dB(A), re 20 µPa${inaudible}`];
 }
 
 // Section that saves the design as a rig file; a second click replaces an existing file.

@@ -10,14 +10,14 @@ export class Result {
     this.title = made("h2", { tabIndex: -1 });
     this.facts = made("p", { className: "soft" });
     this.words = made("p", { className: "words" });
-    this.remarks = made("ul", { className: "remarks" });
+    this.means = made("p", { className: "soft", textContent: MEANS });
     this.rows = made("tbody");
-    const box = made("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "Scale as a table" },
+    this.table = made("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "Scale as a table" },
       made("table", {}, made("thead", {}, made("tr", {}, ...HEADS.map((textContent) => made("th", { scope: "col", textContent })))), this.rows));
     this.on = made("button", { type: "button", textContent: "Go on voting", onclick: () => goes.voting(this.number) });
     const back = made("button", { type: "button", textContent: "To all juries", onclick: () => goes.setup() });
     this.named = made("p", { className: "soft", textContent: "You have seen the names: further votes are no longer blind." });
-    element.append(this.title, this.words, this.facts, this.remarks, box, made("p", { className: "soft", textContent: MEANS }), made("div", { className: "line" }, this.on, back), this.named);
+    element.append(this.title, this.words, this.facts, this.table, this.means, made("div", { className: "line" }, this.on, back), this.named);
   }
 
   async open(number) {
@@ -27,8 +27,7 @@ export class Result {
     this.title.textContent = found.question;
     this.facts.textContent = [found.listener, `played at ${found.played}`, `${found.voted} of ${found.total} comparisons voted`].filter(Boolean).join(" · ");
     this.words.textContent = found.words;
-    this.remarks.replaceChildren(...found.remarks.map((textContent) => made("li", { textContent })));
-    this.remarks.hidden = !found.remarks.length;
+    this.table.hidden = this.means.hidden = !found.voted;
     const placed = found.sounds.filter(({ value }) => value !== null);
     const low = Math.min(...placed.map((one) => one.low_95)), high = Math.max(...placed.map((one) => one.high_95));
     const share = (value) => (100 * (value - low)) / (high - low || 1);
@@ -49,8 +48,8 @@ export class Result {
 
   clear() {
     this.number = null;
-    for (const part of [this.rows, this.remarks, this.words]) part.replaceChildren();
+    for (const part of [this.rows, this.words]) part.replaceChildren();
   }
 }
 
-const words = (value) => (value === null ? "" : value.toFixed(2).replace("-", "−"));
+const words = (value) => (value === null ? "not compared" : value.toFixed(2).replace("-", "−"));

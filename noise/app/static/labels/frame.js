@@ -46,7 +46,7 @@ export function build(element) {
       group("View", parts.out, parts.in, parts.whole, parts.fit),
       group("Correcting", parts.undo, parts.redo, parts.agree, parts.help)),
     parts.lanes,
-    made("div", { className: "labelling" }, parts.labels, made("p", { className: "shortcuts", textContent: "Drag: select · 1–5: label · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys" })),
+    made("div", { className: "labelling" }, parts.labels, made("p", { className: "shortcuts", textContent: "none: no creak, squawk or squeal; unknown: a noise that may be none of the three" }), made("p", { className: "shortcuts", textContent: "Drag: select · 1–5: label · C: confirm all · Ctrl+Z: undo · Space: play · ?: keys" })),
     made("div", { className: "under" }, parts.readout, parts.legend),
     made("section", { className: "below", ariaLabel: "Segment" }, parts.chosen, parts.levels, parts.source, parts.conditions, parts.shares),
     parts.gains,

@@ -21,8 +21,9 @@ export async function levelsOf(id, channel, from, to) {
   const { start, end, unit, level, level_a: weighted, level_af_max: most, third_octaves: octaves } = await api(asked(id, "bands", { channel, start: from, end: to }));
   const said = (value, what) => (value === null ? [] : [`${value.toFixed(1)} ${what}`]);
   const strongest = Object.entries(octaves).filter(([, value]) => value !== null).sort(([, one], [, two]) => two - one)[0];
-  const words = [...said(level, unit), ...said(weighted, unit === "dBFS" ? "dBFS(A)" : "dB(A)"), ...said(most, "Fast at most")].join(", ");
-  return `${start.toFixed(2)}–${end.toFixed(2)} s: ${words}${strongest ? `; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)}` : ""}`;
+  const weightedUnit = unit === "dBFS" ? "dBFS(A)" : "dB(A)";
+  const words = [...said(level, unit), ...said(weighted, weightedUnit), ...said(most, `${weightedUnit} Fast maximum`)].join(", ");
+  return `${start.toFixed(2)}–${end.toFixed(2)} s: ${words}${strongest ? `; strongest third octave ${strongest[0]} Hz, ${strongest[1].toFixed(1)} dB` : ""}`;
 }
 
 // Samples of a WAV file of floats.
