@@ -109,7 +109,7 @@ def _own_scores(card: object) -> str:
     parts = [f"{counted(card['files'], 'file')}, each scored by trees grown without it"]
     for label, scores in card["labels"].items():
         of = counted(scores["files"], "file")
-        recall = f"recall {scores['recall']:.0%} in {of}, " if scores["windows"] else ""
+        recall = f"recall {scores['recall']:.0%} in {of}, " if scores["stretches"] else ""
         named = counted(scores["false_names"], "time")
         parts.append(f"{label}: {recall}named {named} in something else")
     return "; ".join(parts)

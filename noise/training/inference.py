@@ -393,35 +393,6 @@ def train_inference(
     return replace(calibrated, card={"seed": seed, "samples": dict(labels)})
 
 
-def coverage(model: Inference, samples: Sequence[RunSample]) -> dict[str, tuple[int, int]]:
-    """Count the intervals of samples that were not used in training, and those that hold.
-
-    Parameters
-    ----------
-    model : Inference
-    samples : sequence of RunSample
-
-    Returns
-    -------
-    dict of str to (int, int)
-        By quantity and recording, such as ``speed/rig``, over all sets of channels and conditions.
-    """
-    runs = Runs.of(samples, model.names)
-    counts: dict[str, tuple[int, int]] = {}
-    for index, calibrated, subset, others in _cases():
-        at = (index, subset, calibrated, others)
-        outside, y = model.outside[at], rounded(runs.scaled[:, index])
-        if outside[0] < 0:
-            continue
-        values = _distribution(model, runs, index, calibrated, int(model.used[at]), others)
-        narrow = model.is_narrow(index, values, outside)
-        inside = (values[:, outside[2]] <= y) & (y <= values[:, -1 - outside[3]])
-        name = f"{QUANTITIES[index]}/{('field', 'rig')[calibrated]}"
-        given, right = counts.get(name, (0, 0))
-        counts[name] = (given + int(narrow.sum()), right + int(inside[narrow].sum()))
-    return counts
-
-
 def _grown(runs: Runs, names: tuple[str, ...], seed: int) -> Inference:
     rng = np.random.default_rng([seed, 1])
     n = len(runs.scaled)

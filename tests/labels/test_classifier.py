@@ -6,7 +6,6 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 
 from models.errors import ParameterError
 from noise.classifier import LABELS, load_classifier
-from noise.classifier.model import at_sensitivity
 from noise.labels.segmentation import QUIET, labelled_stretches
 from noise.training.classifier.cross_fitting import (
     FALSE_NAMES_AN_HOUR,
@@ -72,13 +71,6 @@ def test_few_backgrounds_are_called_each_noise_at_its_threshold():
     assert np.all((thresholds > 0.25) & (thresholds < 0.97))
     assert np.all(false_names(backgrounds, thresholds) <= FALSE_NAMES_AN_HOUR)
     assert np.all(false_names(backgrounds, thresholds - 0.02) > FALSE_NAMES_AN_HOUR)
-
-
-@pytest.mark.parametrize("threshold", [0.5, 0.8])
-def test_more_sensitive_is_named_sooner(threshold):
-    assert at_sensitivity((threshold,) * 3, 1.0) == pytest.approx((threshold,) * 3)
-    assert at_sensitivity((threshold,) * 3, 4.0)[0] < threshold
-    assert at_sensitivity((threshold,) * 3, 0.25)[0] > threshold
 
 
 def test_what_a_sound_fades_into_does_not_name_it():

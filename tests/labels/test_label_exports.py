@@ -7,11 +7,9 @@ import math
 from pathlib import Path
 
 import pytest
-from hypothesis import given, strategies as st
 
 from models.errors import RecordingError
 from noise.base.tables import write_table
-from noise.classifier import LABELS
 from noise.cli import main
 from noise.labels.conditions import conditions_map
 from noise.labels.table import COLUMNS, read_label_table
@@ -37,9 +35,6 @@ TABLE = [
 ]
 
 
-NEWER = ("level_dba", "l_afmax_dba", "snr_dba", "label_source")
-
-
 @pytest.mark.parametrize("ending", [".csv", ".jsonl", ".parquet", ".xlsx"])
 def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
     path = tmp_path / f"labels{ending}"
@@ -49,13 +44,6 @@ def test_a_table_is_read_back_as_it_was_written(tmp_path, ending):
         {k: v for k, v in r.items() if k != "calibrated"} for r in TABLE
     ]
     assert [r["calibrated"] for r in back] == [True] * 4 + [None]
-
-
-def test_a_table_from_before_there_were_all_columns_still_reads(tmp_path):
-    path = tmp_path / "labels.csv"
-    write_table(path, [name for name in COLUMNS if name not in NEWER], TABLE[:1])
-    (back,) = read_label_table(path)
-    assert back == TABLE[0] | dict.fromkeys(NEWER)
 
 
 @pytest.mark.parametrize(
@@ -79,29 +67,6 @@ def test_what_is_no_label_table_is_refused_with_the_reason(tmp_path, name, conte
 def test_jitter_of_the_logged_speed_does_not_split_a_place_but_a_step_does():
     rows = [row(speed=v) for v in (4.97, 5.0, 5.02, -5.01, 6.0, 12.0)]
     assert [sum(p.segments.values()) for p in conditions_map(rows)] == [4, 1, 1]
-
-
-number = st.one_of(st.none(), st.floats(0.0, 1e6), st.just(math.inf))
-
-
-@given(
-    st.lists(
-        st.tuples(
-            st.sampled_from(LABELS), st.one_of(st.none(), st.floats(-1e4, 1e4)),
-            st.one_of(st.none(), st.floats(0.0, 10.0)), number,
-        ),
-        max_size=40,
-    )
-)  # fmt: skip
-def test_the_map_counts_every_segment_once_where_it_belongs(segments):
-    rows = [row(label=label, speed=v, fit=i, support=k) for label, v, i, k in segments]
-    places = conditions_map(rows)
-    assert sum(sum(place.segments.values()) for place in places) == len(rows)
-    assert len({(p.speed, p.interference, p.support_stiffness) for p in places}) == len(places)
-    for place in places:
-        for found in (place.speed, place.interference, place.support_stiffness):
-            assert found is None or found.low <= found.middle <= found.high
-    assert len({place.speed for place in places} - {None}) <= 15
 
 
 def test_the_picture_shows_each_count_and_a_panel_for_each_support():

@@ -143,17 +143,6 @@ def test_rows_have_all_columns_and_say_where_a_condition_comes_from():
     assert row["speed_rad_s_source"] == row["material_source"] == "missing"
 
 
-def test_speed_is_that_of_the_segment_where_the_angle_was_recorded():
-    angle = np.concatenate([np.linspace(0.0, 1.0, 100), np.linspace(1.0, 4.0, 100)])
-    recording = Recording(angle[None], 100.0, (Channel("angle"),), Condition(speed=99.0))
-    parts = [
-        Segment("all", t, t + 1.0, "none", dict.fromkeys(LABELS, 0.2), None, None, None)
-        for t in (0.0, 1.0)
-    ]
-    speeds = [row["speed_rad_s"] for row in label_rows("run.wav", recording, parts)]
-    assert speeds == pytest.approx([1.0, 3.0], rel=0.02)
-
-
 @pytest.mark.parametrize(("stated", "given"), [(3.0, 3.0), (-3.0, 3.0), (3.1, 3.0), (None, 3.0)])
 def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, given):
     angle = 2.99997 * np.arange(2000) / 1000.0
@@ -164,13 +153,6 @@ def test_a_speed_is_written_as_it_was_logged_where_the_angle_agrees(stated, give
     assert row["speed_rad_s_source"] == "logged"
     told = "speed 3 rad/s is that of the channel angle; 3.1 was logged"
     assert row["note"] == (told if stated == 3.1 else None)
-
-
-def test_rumble_is_not_taken_for_the_tone():
-    time = np.arange(60_000) / 30e3
-    rumbling = np.sin(2 * np.pi * 2900.0 * time) + 2.0 * np.sin(2 * np.pi * 20.0 * time)
-    found = file_label(label_recording(sound(rumbling), CLASSIFIER))
-    assert found.frequency == pytest.approx(2900.0, abs=5.0)
 
 
 def test_speed_of_a_swinging_shaft_is_its_mean_magnitude():

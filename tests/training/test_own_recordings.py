@@ -12,7 +12,7 @@ from models.recording import Channel, Recording
 from noise.classifier import load_classifier
 from noise.cli import main
 from noise.recordings import write_recording
-from noise.training.classifier.own_recordings import own_samples
+from noise.training.classifier.own_recordings import OWN_WEIGHT, own_samples
 
 RATE = 16_000.0
 
@@ -60,12 +60,12 @@ def test_a_table_beside_the_folder_of_its_recordings_is_enough(tmp_path):
     assert "names run.wav, of which there is none or several" in refusals[0]
 
 
-@pytest.mark.parametrize(("seconds", "n"), [(0.5, 1), (1.01, 2), (7.3, 8)])
-def test_windows_of_a_track_are_half_a_second_to_one(tmp_path, seconds, n):
-    write(tmp_path / "a", seconds=seconds, tracks=2)
+def test_a_stretch_of_a_track_counts_by_its_seconds(tmp_path):
+    write(tmp_path / "a", seconds=7.3, tracks=2)
     (tmp_path / "labels.csv").write_text("file,channel,label\na.wav,2,squawk\n")
     samples, refusals = own_samples(tmp_path / "labels.csv")
-    assert labels_of(samples) == [("a.wav", "squawk")] * n
+    assert labels_of(samples) == [("a.wav", "squawk")]
+    assert samples[0].weight == 8 * OWN_WEIGHT
     assert refusals == []
 
 
@@ -119,7 +119,7 @@ def test_own_recordings_are_learned_and_the_card_tells_before_and_after(own, tmp
     said = load_classifier(model).card["own"]
     assert json.loads(json.dumps(said)) == said
     squeal = said["labels"]["squeal"]
-    assert (said["files"], squeal["windows"]) == (6, 6)
+    assert (said["files"], squeal["stretches"]) == (6, 6)
     assert squeal["recall"] == 1.0
     assert "each scored by trees grown without it" in capsys.readouterr().err
 

@@ -25,11 +25,11 @@ from noise.recordings import find_recordings
 from noise.recordings.files import files_below, is_file, open_blocks
 from noise.training.classifier.samples import Sample
 
-SHORTEST_WINDOW = 0.1
-"""Minimum duration of a labelled stretch [s]."""
+SHORTEST, LONGEST = 0.1, 60.0
+"""Minimum duration of a labelled stretch, and maximum duration of what is used of it [s]."""
 
 OWN_WEIGHT = 5.0
-"""Weight of a window of the user, relative to a simulated sample."""
+"""Weight of a second of the user's, relative to a simulated sample."""
 
 
 class _Stretch(NamedTuple):
@@ -42,7 +42,7 @@ class _Stretch(NamedTuple):
 def own_samples(
     source: Path, progress: Callable[[Sequence[Path]], Iterable[Path]] = iter
 ) -> tuple[list[Sample], list[str]]:
-    """Return the labelled windows of a folder or of a label table as training samples.
+    """Return the labelled stretches of a folder or of a label table as training samples.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def own_samples(
     Returns
     -------
     samples : list of Sample
-        Windows of at most 1 s, whose sources are the files.
+        Their sources are the files.
     refusals : list of str
         One line for each file that cannot be read or has no label, and for each invalid label.
 
@@ -75,7 +75,7 @@ def own_samples(
     ...     _ = write_recording(Path(folder) / "none" / "wind", run)
     ...     samples, refusals = own_samples(Path(folder))
     >>> [sample.label for sample in samples], refusals
-    (['none', 'none', 'none'], [])
+    (['none'], [])
     """
     samples: list[Sample] = []
     refusals: list[str] = []
@@ -83,7 +83,7 @@ def own_samples(
     stretches = labelled(source, refusals)
     for path in progress(list(stretches)):
         try:
-            samples += _windows(path, stretches[path], refusals)
+            samples += _samples(path, stretches[path], refusals)
         except (BushingNoiseError, OSError) as error:
             message = str(error)
             refusals.append(message if path.name in message else f"{path}: {message}")
@@ -106,7 +106,7 @@ def own_card(samples: Sequence[Sample], names: NDArray[np.intp]) -> dict[str, ob
         if files or np.any(names == i):
             labels[label] = {
                 "files": len(files),
-                "windows": int(own.sum()),
+                "stretches": int(own.sum()),
                 "enough": len(files) >= 5,
                 "recall": round(float(np.mean(names[own] == i)), 4) if own.any() else None,
                 "false_names": int(np.sum((names == i) & ~own)),
@@ -169,8 +169,8 @@ def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
     return by_file
 
 
-def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[Sample]:
-    """Yield the windows of the labelled stretches of a recording."""
+def _samples(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iterator[Sample]:
+    """Yield the labelled stretches of a recording, each of at most a minute."""
     featureless = False
     with open_blocks(path) as whole:
         for label, start, end, channel in stretches:
@@ -182,24 +182,19 @@ def _windows(path: Path, stretches: list[_Stretch], refusals: list[str]) -> Iter
                 continue
             blocks = whole if channel == "all" else whole.track(tracks[channel])
             first = max(0, round(start * blocks.rate))
-            last = round(min(end * blocks.rate, blocks.n_samples))
-            if last - first < SHORTEST_WINDOW * blocks.rate:
+            last = round(min(end * blocks.rate, first + LONGEST * blocks.rate, blocks.n_samples))
+            if last - first < SHORTEST * blocks.rate:
                 refusals.append(
-                    f"{path}: {label} from {start:g} s on has less than {SHORTEST_WINDOW:g} s in "
-                    "the recording"
+                    f"{path}: {label} from {start:g} s on has less than {SHORTEST:g} s in the "
+                    "recording"
                 )
                 continue
-            # Equal windows of at most a second
-            n = math.ceil((last - first) / blocks.rate)
-            edges = np.linspace(first, last, n + 1).round().astype(int)
-            # At most 60 windows, spread evenly
-            chosen = np.unique(np.linspace(0, n - 1, min(n, 60)).round().astype(int))
-            for index in chosen.tolist():
-                cut = RecordingBlocks.of(blocks.cut(int(edges[index]), int(edges[index + 1])))
-                features = window_features(cut).features if has_window_channel(cut) else None
-                if features is None or not np.isfinite(features).any():
-                    featureless = True
-                    continue
-                yield Sample(features, label, str(path), OWN_WEIGHT, real=True)
+            cut = RecordingBlocks.of(blocks.cut(first, last))
+            features = window_features(cut).features if has_window_channel(cut) else None
+            if features is None or not np.isfinite(features).any():
+                featureless = True
+                continue
+            weight = OWN_WEIGHT * math.ceil((last - first) / blocks.rate)
+            yield Sample(features, label, str(path), weight, real=True)
     if featureless:
         refusals.append(f"{path}: has nothing to learn from in it")
