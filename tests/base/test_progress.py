@@ -1,7 +1,6 @@
 """Bars on a terminal, one line a step in a file."""
 
 import fcntl
-import io
 import os
 import pty
 import struct
@@ -45,12 +44,6 @@ def terminal(monkeypatch):
     return Terminal(monkeypatch)
 
 
-def in_file(monkeypatch):
-    stream = io.StringIO()
-    monkeypatch.setattr(sys, "stderr", stream)
-    return stream
-
-
 def work():
     with steps("screening", 3) as tell:
         for text in ("preparing", "mapping", "grading"):
@@ -64,11 +57,3 @@ def test_a_terminal_shows_how_many_steps_are_done_and_left_and_keeps_the_lines(t
         assert f"{done}/3 " in shown
     assert "screening" in shown
     assert "grading goes well\r\n" in shown
-
-
-def test_a_file_gets_the_lines_alone(monkeypatch):
-    stream = in_file(monkeypatch)
-    work()
-    assert stream.getvalue().splitlines() == [
-        line for text in ("preparing", "mapping", "grading") for line in (text, f"{text} goes well")
-    ]

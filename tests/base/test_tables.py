@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 
 import pytest
 from hypothesis import given, strategies as st
@@ -99,28 +98,6 @@ def test_csv_is_written_over_another_in_its_form_and_without_a_formula(tmp_path,
     assert {(row["file"], row["error"]) for row in rows} == {("-2.wav", "=1, 5; x")}
     write_table(path, *read_table(path))
     assert path.read_bytes() == before
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        "file;level_db\n3;59,9\n",  # of LibreOffice, which writes no mark
-        "file;level_db\r\n3;59.9\r\n",
-        "\ufefffile;level_db\r\n3;59\r\n",
-        "file,level_db\r\n3,59.9\r\n",
-    ],
-)
-def test_the_signs_of_csv_are_found_one_by_one(tmp_path, content):
-    path = tmp_path / "t.csv"
-    path.write_text(content, encoding="utf-8", newline="")
-    write_table(path, *read_table(path))
-    assert path.read_bytes().decode() == content
-
-
-def test_a_missing_library_is_told_with_the_command_that_installs_it(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(ParameterError, match=r'pip install "bushing-noise\[parquet\]"'):
-        write_table(tmp_path / "t.parquet", ["a"], [])
 
 
 def test_a_workbook_with_further_sheets_is_not_written_over(tmp_path):

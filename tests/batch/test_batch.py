@@ -98,16 +98,6 @@ def test_a_journal_that_is_none_begins_again_with_a_note(work, jobs, tmp_path, c
     assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]
 
 
-def test_a_changed_recording_or_sidecar_is_done_again(work, jobs, tmp_path):
-    table = tmp_path / "t.csv"
-    keep(table, work, jobs)
-    (tmp_path / "a.wav").write_bytes(b"another")
-    (tmp_path / "c.json").write_text("{}")
-    known = keep(table, work, jobs)
-    assert [done is None for done in known] == [True, True, True, False, False, False]
-    assert [done is None for done in keep(table, work, jobs)] == [False, True, *[False] * 4]
-
-
 def test_a_journal_that_cannot_be_written_is_refused(work, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(ParameterError, match="cannot be written"):

@@ -1,8 +1,5 @@
 """``label``, ``features``, ``train``: many recordings into one table, and what stands beside it."""
 
-import os
-import pty
-import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -178,13 +175,3 @@ UNKNOWN = SQUEAL | {"label": "unknown", "p_unknown": 0.3, "p_squeal": 0.65}
 )
 def test_a_recording_is_told_in_one_line(rows, line):
     assert list(result_lines(rows)) == [line]
-
-
-def test_a_terminal_gets_lines_in_place_of_the_table(runs, monkeypatch, capsys):
-    ours, theirs = pty.openpty()
-    with os.fdopen(ours, "rb"), os.fdopen(theirs, "w") as terminal:
-        monkeypatch.setattr(sys, "stdout", terminal)
-        assert main(["label", "runs/a.wav"]) == 0
-        terminal.flush()
-        assert os.read(ours, 65536).decode().startswith("a.wav  ")
-    assert "takes the whole table" in capsys.readouterr().err

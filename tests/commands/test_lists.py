@@ -4,7 +4,6 @@ import re
 
 import pytest
 
-import noise
 from models.rig_file import load_material_rig, load_rig, material_names
 from noise.cli import main
 from noise.screening.design import load_design
@@ -59,7 +58,3 @@ def test_all_effects_and_materials_are_listed(capsys):
 def test_what_is_nearly_right_is_asked_for(call, meant, capsys):
     assert main(call.split()) == 2
     assert f"did you mean {meant}?" in capsys.readouterr().err
-
-
-def test_the_package_has_a_version():
-    assert re.fullmatch(r"\d+\.\d+\.\d+.*", noise.__version__)

@@ -5,7 +5,6 @@ import re
 
 import numpy as np
 import pytest
-import soundfile
 
 from features.modal.hammer import estimate_transfer_function
 from models.radiation.rig_response import impulse_responses
@@ -15,7 +14,6 @@ from noise.cli import main
 from noise.commands import COMMANDS
 from noise.demo import ARM, CASES, N_HITS
 from noise.labels import table as label_table
-from noise.recordings import read_recording
 from noise.recordings.hits import find_hits, read_hit
 from noise.screening import tables
 from tests.helpers.files import csv_rows
@@ -170,17 +168,6 @@ def test_its_hits_give_the_response_of_the_modelled_structure(demo):
     off = 20.0 * np.log10(np.abs(found.response[band]) / exact)
     assert np.median(np.abs(off)) < 0.2
     assert np.median(found.coherence[band]) > 0.98
-
-
-def test_the_sidecar_makes_a_recording_of_plain_samples(tmp_path):
-    (sidecar,) = (block for block in BLOCKS if block.kind == "sidecar")
-    samples = np.stack([np.full(480, 8.0), np.zeros(480)], axis=1)
-    soundfile.write(tmp_path / "run08.wav", samples, 30000, subtype="FLOAT")
-    (tmp_path / "run08.json").write_text(sidecar.text, encoding="utf-8")
-    read = read_recording(tmp_path / "run08.wav")
-    assert read.channel_names == ("torque", "pressure")
-    assert float(read["torque"].mean()) == 8.0
-    assert read.condition.interference == pytest.approx(0.279e-3)
 
 
 @pytest.mark.slow

@@ -136,17 +136,6 @@ def test_without_calibration_levels_are_told_re_full_scale(tmp_path, capsys):
     assert np.abs(read_recording(out)["pressure"]).max() == pytest.approx(2.0, rel=1e-3)
 
 
-def test_what_would_clip_is_refused_with_the_level_that_would_not(runs, tmp_path, capsys):
-    out = tmp_path / "s.wav"
-    given = [runs / "loud.wav", "--out", out, "--pascal-per-full-scale"]
-    render(*given, "0.1", code=2)
-    line = capsys.readouterr().err.splitlines()[-1]
-    assert "would clip" in line
-    assert not out.exists()
-    render(*given, line.split()[-1])
-    assert np.abs(soundfile.read(out)[0]).max() > 0.99
-
-
 def test_rig_files_conditions_and_recordings_are_heard_back_to_back_at_one_gain(tmp_path):
     for name, torque in (("old", 10.7), ("new", 8.5)):
         text = RIG_FILE.replace("10.7", str(torque)).replace("fluorocarbon", "our rubber")

@@ -14,7 +14,7 @@ from models.sensors import Sensors
 from models.suspension import SHIPPED, load_suspension
 from noise.cli import main
 from noise.recordings import read_recording
-from sim.shaft import ConstantSpeed, LoggedSpeed, Oscillation, SpeedRamp
+from sim.shaft import ConstantSpeed, LoggedSpeed
 
 SHORT = ("--speed", "5", "--seconds", "0.1")
 
@@ -71,19 +71,6 @@ def test_a_condition_is_passed_on_in_si_units(call):
 
 
 @pytest.mark.parametrize(
-    ("given", "shaft"),
-    [
-        (["--speed", "-.5e1"], ConstantSpeed(-5.0)),
-        (["--speed", "0..10"], SpeedRamp(0.0, 10.0, 2.0)),
-        (["--speed", "-2.5..-1e1"], SpeedRamp(-2.5, -10.0, 2.0)),
-        (["--oscillate", "15,2"], Oscillation(math.radians(15.0), 2.0)),
-    ],
-)
-def test_the_shaft_turns_either_way_on_a_ramp_or_to_and_fro(call, given, shaft):
-    assert call(*given, "--seconds", "2").shaft == shaft
-
-
-@pytest.mark.parametrize(
     ("text", "note"),
     [
         ("0,1\n1,3\n", ""),
@@ -100,18 +87,6 @@ def test_a_log_gives_the_speed_with_or_without_header(call, tmp_path, capsys, te
     assert isinstance(shaft, LoggedSpeed)
     assert shaft.speed(np.array([0.5]))[0] == pytest.approx(2.0, rel=1e-7)
     assert note in capsys.readouterr().err
-
-
-def test_a_rig_file_names_its_material_fit_and_effects_itself(call, tmp_path):
-    rig = tmp_path / "rig.toml"
-    rig.write_text(
-        'name = "other"\n[[fit]]\ninterference_mm = 0.5\nelastomer_stiffness_Nm_rad = 900\n'
-        'critical_torque_Nm = 20\nkinetic_torque_Nm = 16\ndamping_Nms_rad = { "2214" = 0.1 }\n',
-        encoding="utf-8",
-    )
-    made = call("--speed", "1", "--rig", rig, "--effect", "slip_pulse")
-    assert (made.rig.name, [spec.name for spec in made.rig.effects]) == ("other", ["slip_pulse"])
-    assert made.interference == pytest.approx(0.5e-3, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from features.modal.hammer import (
     check_hit,
     estimate_transfer_function,
 )
-from models.errors import ParameterError, RecordingError
+from models.errors import RecordingError
 
 RATE = 20e3
 PULSE = np.sin(np.pi * np.arange(0.3, 9) / 9)
@@ -82,12 +82,3 @@ def test_h1_and_coherence_are_those_of_scipy():
     np.testing.assert_allclose(estimate.response[1:], (cross / welch(force, *arguments)[1])[1:])
     expected = coherence(force, response, *arguments)[1]
     np.testing.assert_allclose(estimate.coherence[1:], expected[1:], rtol=1e-9)
-
-
-def test_hits_of_different_length_cannot_be_averaged():
-    with pytest.raises(ParameterError, match="must be alike"):
-        estimate_transfer_function(
-            [*hits(np.random.default_rng(5)), Hit(pulse(900), ringing(900), RATE)]
-        )
-    with pytest.raises(ParameterError, match="no hits"):
-        estimate_transfer_function([])

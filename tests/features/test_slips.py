@@ -59,22 +59,6 @@ def test_what_does_not_drop_suddenly_does_not_slip(shape):
     assert not abs(found.asymmetry) > 0.1
 
 
-def gliding_stick_slip(glide, rate=30e3, seconds=1.0, frequency=80.0):
-    """A sawtooth whose rate changes by so many octaves a second."""
-    t = np.arange(round(rate * seconds)) / rate
-    octaves = glide * t
-    cycles = frequency * (t if glide == 0 else (2**octaves - 1) / (glide * math.log(2)))
-    phase = cycles % 1.0
-    return 8.0 + 2.7 * np.where(phase < 0.9, phase / 0.9, (1.0 - phase) / 0.1)
-
-
-@pytest.mark.parametrize("rate", [16e3, 44.1e3, 96e3])
-@pytest.mark.parametrize("glide", [-1.5, -0.1, 0.0, 0.5])
-def test_the_glide_of_the_slip_rate_is_told_at_any_sampling_rate(glide, rate):
-    found = torque_slips(gliding_stick_slip(glide, rate), rate)
-    assert found.glide == pytest.approx(glide, abs=0.02)
-
-
 # --- slips of a sliding speed -----------------------------------------------------------------
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import struct
 import zipfile
 import zlib
@@ -14,7 +13,6 @@ import pytest
 
 from models.errors import ParameterError, RecordingError
 from models.foreign_file import (
-    check_plain_file,
     read_arrays,
     reading,
     refusing,
@@ -28,12 +26,6 @@ def refusal(path, read=read_arrays, what="NPZ file"):
     assert message.startswith(f"{path}: ")
     assert "\n" not in message
     return message.removeprefix(f"{path}: ")
-
-
-def test_a_pipe_is_refused_without_being_opened(tmp_path):
-    os.mkfifo(tmp_path / "run.wav")
-    with pytest.raises(ParameterError, match="is a pipe, not a file"):
-        check_plain_file(tmp_path / "run.wav")
 
 
 def test_a_file_that_is_too_large_is_not_opened(tmp_path):

@@ -6,7 +6,6 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, strategies as st
 
-from models.bench import Microphone
 from models.errors import ParameterError
 from models.rig import Rig, damping_at
 from models.rig_file import changed_rig_text, load_material_rig, load_rig, material_names, rig_text
@@ -66,24 +65,6 @@ def test_a_shipped_material_makes_a_plausible_rig_as_a_base_to_the_bit(tmp_path,
     assert remarks(rig) == ()
     assert loaded(tmp_path, f'base = "{name.lower()}"') == rig
     assert loaded(tmp_path, f'material = "{name.lower()}"').fits == rig.fits
-
-
-def test_part_of_a_table_replaces_that_part(tmp_path):
-    rig = loaded(
-        tmp_path,
-        "[plate]\n"
-        "loss_factor = 0.05\n"
-        "[microphone]\n"
-        "position_m = [0.0, 0.1, 0.9]\n"
-        "[beams]\nradiate = false\nanchor_rotation_Nm_rad = 500\n"
-        'anchor_translation_N_m = "rigid"\nstrike = 0.01\n',
-    )
-    assert rig.plate.loss_factor == 0.05
-    assert rig.plate.length == RIG.plate.length
-    assert rig.microphone == Microphone((0.0, 0.1, 0.9))
-    assert rig.beams == replace(
-        RIG.beams, radiating=False, anchor_rotation=500.0, anchor_translation=math.inf, strike=0.01
-    )
 
 
 def test_a_chain_of_files_changes_what_each_names(tmp_path):
@@ -157,12 +138,9 @@ def fit(old, new):
     [
         ("desing = 3", ("did you mean 'design'", "measured_response")),
         ('effects = "none"', ("effects must be a list",)),
-        ('effects = ["slip_pulse:loud"]', ("NAME:key=value",)),
-        ("fit = 3", ("fit must be given as",)),
         ("elastomer_damping_share = 2", ("must be a number from 0 to 1",)),
         # fits
         (fit("= 665.0", "= -1.0"), ("fit 1: elastomer_stiffness_Nm_rad = -1.0", "Nm/rad")),
-        (fit("= 665.0", f"= {10**400}"), ("elastomer_stiffness_Nm_rad",)),
         (fit("torque_Nm = 10.7", "torque_Nm = 7.0"), ("critical_torque_Nm = 7", "is below")),
         (fit('"3745"', '"stiff"'), ("entry 'stiff'", "or fixed")),
         (CONTRACT + FIT, ("two [[fit]] entries have the same interference_mm",)),
@@ -175,13 +153,9 @@ def fit(old, new):
         ("[plate]\nlenght_m = 1", (", plate: unknown key 'lenght_m'; did you mean 'length_m'",)),
         ("[plate]\nlength_m = 1e6", ("modes up to 16 kHz; it must have 5 to 5000",)),
         ("[plate]\nclamp_position_m = [9, 0]", ("lies off the plate",)),
-        ("[plate]\nloss_factor = { 100 = 0.1 }", ("loss_factor = {", "must be a number above 0")),
-        ("[plate]\nloss_factor = 1.5", ("loss_factor = 1.5",)),
         ("[microphone]\nposition_m = [0, 0, -1]", ("z = -1 m", "at least 0.01 m above the plate")),
-        ("[beams]\nradiate = 'yes'", ("beams: radiate = 'yes' must be true or false",)),
         ("[beams]\nanchor_rotation_Nm_rad = 'soft'", ('a number above 0 Nm/rad, or "rigid"',)),
         # bushing
-        ("[temperature]\nreference_C = 23", ("glass_transition_C is missing",)),
         ("[temperature]\nreference_C = -30\nglass_transition_C = -20", ("not above glass",)),
         ("[sleeve]\nhardness_shore_A = 60\nyoungs_modulus_MPa = 3", ("not both",)),
         (
@@ -193,15 +167,12 @@ def fit(old, new):
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),
         ("[change]\ndamping = 0.1", ("write damping_Nms_rad = 0.1",)),
         ('[change]\ndamping = "20 %"', ("with its sign",)),
-        ('[change]\ncritical_torque = "x0.1"', ("critical_torque_Nm = 0.5892 is below",)),
         ('[change]\nslip_pulse.duration = "x2"', ("slip_pulse.duration", "as a number")),
         ('[change]\ndamping = "x2"\ndamping_Nms_rad = 0.1', ("damping is changed twice",)),
-        ('[change]\nelastomer_damping_share = "x9"', ("must be a number from 0 to 1",)),
         # sensors
         ("[sensors]\nnoise = 3", ("from recordings",)),
         ("[sensors]\nragne = { torque = 1 }", ("'ragne'", "did you mean 'range'")),
         ("[sensors]\nbits = 12", ("bits of torque without a range", "range = { torque = ... }")),
-        ("[sensors]\nrange = { torque = 50 }\nbits = { pressure = 12 }", ("bits of pressure",)),
         ("[sensors]\nrange = { torque = 50 }\nbits = 12.5", ("bits = 12.5", "whole number")),
     ],
 )

@@ -6,12 +6,6 @@ import pytest
 from models.errors import ParameterError
 from models.transfer_functions.files import ENDINGS, read_transfer_function, write_transfer_function
 from models.transfer_functions.transfer_function import TransferFunction
-from models.transfer_functions.uff import (
-    TIME_RESPONSE,
-    UffFunction,
-    read_uff_functions,
-    write_uff_functions,
-)
 
 F = 0.78125 * np.arange(401)
 H = F**2 * np.exp(1j * F / 30)
@@ -46,15 +40,6 @@ def test_a_response_is_read_as_it_was_written(tmp_path, ending, coherence):
         np.testing.assert_allclose(back.coherence, coherence, atol=1e-9)
 
 
-@pytest.mark.parametrize("rate", [25600.0, 44100.0, 48000.0, 51200.0, 65536.0, 96000.0])
-def test_a_universal_file_keeps_the_sampling_rate(tmp_path, rate):
-    path = tmp_path / "run.uff"
-    t = np.arange(5000) / rate
-    write_uff_functions(path, [UffFunction(TIME_RESPONSE, t, np.sin(t), "Pa")])
-    (back,) = read_uff_functions(path, TIME_RESPONSE)
-    assert 1 / back.x[1] == pytest.approx(rate, rel=1e-12)
-
-
 def npz(path, **changed):
     content = {"frequency_hz": F, "response": H, "input_unit": "N m", "output_unit": "Pa"}
     content |= changed
@@ -67,12 +52,9 @@ def npz(path, **changed):
         ({"response": None}, "has no response"),
         ({"response": np.abs(H)}, "response has type float64; it must be complex"),
         ({"response": np.where(F == 0, np.nan, H)}, "response is (nan+0j) at line 1"),
-        ({"response": 0 * H}, "zero throughout"),
         ({"frequency_hz": F[::-1]}, "frequency_hz falls from 312.5"),
-        ({"frequency_hz": np.ones(401)}, "frequency_hz stays at 1 Hz at line 2; it must rise"),
         ({"coherence": 2 * np.ones(401)}, "coherence goes from 2 to 2"),
         ({"output_unit": np.array([1.0])}, "output_unit is '1.0'; it must be"),
-        ({"frequency_hz": np.array(["a"] * 401)}, "could not convert string"),
     ],
 )
 def test_an_npz_that_cannot_be_used_is_refused_by_key(tmp_path, changed, message):
@@ -88,8 +70,6 @@ def test_an_npz_that_cannot_be_used_is_refused_by_key(tmp_path, changed, message
         ("frequency_hz,real\n1,2\n", "has no column imag; expected frequency_hz, real, imag"),
         ("frequency_hz,real,imag\n1,2,x\n", "imag is 'x' in line 2, expected a number"),
         ("frequency_hz,real,imag\n1,2,3\n1,2\n", "line 3 has 2 columns"),
-        ("frequency_hz,real (V),imag (V)\n" + 9 * "1,2,3\n", "frequency_hz stays at 1"),
-        ("frequency_hz,real,imag\n1,2,3\n", "at least 8"),
     ],
 )
 def test_a_csv_that_cannot_be_used_is_refused_by_column(tmp_path, text, message):
@@ -124,11 +104,9 @@ def universal(path, unit, data_type, *, per="N", axis="Hz", of_axis=18, units=No
     [
         ("m/s\u00b2", 12, {}, 1.0),
         ("g", 12, {}, 9.80665),
-        ("m/s", 11, {}, W),
         ("\u00b5m", 8, {}, 1e-6 * W**2),
         ("NONE", 8, {"per": "NONE"}, W**2),
         ("NONE", 12, {"per": "NONE", "units": (5, 1e3, 1e3)}, 1.0),
-        ("NONE", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
         ("mm/s^2", 12, {"units": (5, 1e3, 1.0)}, 1e-3),
         ("m/N", 0, {"per": "NONE"}, W**2),
     ],
@@ -154,9 +132,7 @@ def test_a_universal_response_is_converted_by_what_it_states(
         ("V", 12, {}, "output_unit is 'V'; it must be 'm/s^2'"),
         ("m/s^2", 12, {"per": "N m"}, "input_unit is 'N m'; it must be 'N'"),
         ("NONE", 12, {"per": "NONE", "direction": 4}, "input_unit is 'N m'; it must be 'N'"),
-        ("m/s^2", 12, {"axis": "s"}, "goes over 's', but has the data type of frequency"),
         ("m/s^2", 12, {"axis": "s", "of_axis": 17}, "goes over s, expected frequency in Hz"),
-        ("m/s^2", 12, {"axis": "NONE", "of_axis": 20}, "goes over data type 20"),
     ],
 )
 def test_a_universal_response_that_is_another_one_is_refused(

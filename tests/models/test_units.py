@@ -35,8 +35,6 @@ def test_units_of_no_channel_or_of_several(spelling):
     [
         ("Time (ms)", ("Time", "ms")),
         ("Beschl. [m/s²]", ("Beschl.", "m/s²")),
-        ("Channel 1 (Hammer) [N]", ("Channel 1 (Hammer)", "N")),
-        ("Acceleration (m/(s^2))", ("Acceleration", "m/(s^2)")),
         ("Kraft / kN", ("Kraft", "kN")),
         ("acceleration_g", ("acceleration", "g")),
         ("pressure_2", ("pressure_2", "")),

@@ -60,18 +60,6 @@ def test_labels_and_conditions_are_those_of_the_whole(tmp_path, kinds):
     assert len(found) > 1 or kinds != ("pressure", "angle")
 
 
-def test_tracks_of_a_long_file_are_labelled_one_by_one(tmp_path):
-    path = tmp_path / "run.flac"
-    sound = noise(2, 3.0)
-    sound[1] = 0.0
-    soundfile.write(path, sound.T, RATE)
-    classifier = load_classifier()
-    with open_blocks(path) as blocks:
-        found = label_recording(blocks, classifier, per_track=True)
-    assert found == label_recording(read_recording(path), classifier, per_track=True)
-    assert {segment.channel for segment in found} == {"1", "2"}
-
-
 def test_what_breaks_off_or_is_no_sound_is_refused_with_the_words_of_reading_the_whole(tmp_path):
     path = tmp_path / "run.wav"
     soundfile.write(path, noise(1, 1.0).T, RATE)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import struct
-import tracemalloc
 from contextlib import suppress
 from itertools import pairwise
 from types import SimpleNamespace
@@ -56,9 +55,7 @@ def assert_tones(raw, *expected):
 FORMATS = [
     ("wav", "FLOAT", False),
     ("wav", "PCM_16", True),
-    ("wav", "IMA_ADPCM", True),
     ("flac", "PCM_16", True),
-    ("aiff", "PCM_24", True),
     ("rf64", "DOUBLE", False),
     ("ogg", "VORBIS", True),
     ("mp3", "MPEG_LAYER_III", True),
@@ -88,21 +85,6 @@ def test_a_whole_file_gives_its_samples_and_one_that_is_cut_is_refused(
             assert cut.samples.shape[1] < len(t)
 
 
-def test_a_header_that_announces_the_moon_takes_no_memory(tmp_path):
-    content = bytearray(encoded(tone(), format="FLAC"))
-    content[21] |= 0x0F  # the 36 bits that count the samples
-    content[22:26] = b"\xff" * 4
-    path = tmp_path / "run.flac"
-    path.write_bytes(content)
-    tracemalloc.start()
-    try:
-        with pytest.raises(RecordingError, match="68719476735 samples, more than a file of this"):
-            read_recording(path)
-        assert tracemalloc.get_traced_memory()[1] < 1e6
-    finally:
-        tracemalloc.stop()
-
-
 # MP3
 
 HIGH = (0, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320)
@@ -130,9 +112,7 @@ def headless(data):
     ("mode", "rate", "n_tracks"),
     [
         ("VARIABLE", 48000, 1),
-        ("VARIABLE", 22050, 2),
         ("CONSTANT", 44100, 2),
-        ("CONSTANT", 8000, 1),
     ],
 )
 def test_an_mp3_without_a_header_is_read_to_its_end(tmp_path, mode, rate, n_tracks):
@@ -168,13 +148,6 @@ def test_of_an_mp3_with_a_header_cut_off_is_refused_and_without_it_read(tmp_path
 # Ogg and FLAC
 
 
-def open_length(flac):
-    content = bytearray(flac)
-    content[21] &= 0xF0  # the 36 bits that count the samples
-    content[22:26] = bytes(4)
-    return bytes(content)
-
-
 def parts(*starts, **how):
     return [encoded(tone(at, at + 0.5), **how) for at in starts]
 
@@ -190,11 +163,6 @@ def test_several_sounds_in_a_file_are_refused(tmp_path):
     for ending, (one, other) in joined.items():
         with pytest.raises(RecordingError, match=r"a second sound begins at byte \d+"):
             read(tmp_path, one + other, ending)
-
-
-def test_a_flac_of_unknown_length_is_refused(tmp_path):
-    with pytest.raises(RecordingError, match="does not state its length"):
-        read(tmp_path, open_length(encoded(tone(), format="FLAC")), "flac")
 
 
 # WAV
@@ -221,14 +189,10 @@ def fmt(bits, *, code=1, extensible=False):
 
 X = tone(1.0)[:, 0]
 AS_16 = np.round(X * 32767).astype("<i2").tobytes()
-AS_24 = np.round(X * (2**23 - 1)).astype("<i4").view("u1").reshape(-1, 4)[:, :3].tobytes()
 AS_FLOAT = X.astype("<f4").tobytes()
 KINDS = {
     "16 bits": (fmt(16), AS_16),
-    "24 bits": (fmt(24), AS_24),
     "float": (fmt(32, code=3), AS_FLOAT),
-    "extensible": (fmt(16, extensible=True), AS_16),
-    "extensible float": (fmt(32, code=3, extensible=True), AS_FLOAT),
 }
 LONG = 0xFFFFFFFF
 HEAD = fmt(16)
