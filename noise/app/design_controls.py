@@ -6,7 +6,7 @@ A base is a shipped material or an opened rig file; friction law and effects are
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,10 +73,6 @@ class Control:
     most: float = 1.0
     log: bool = False
     unless: str = ""
-
-    def as_json(self) -> dict[str, object]:
-        """Return the fields for the page."""
-        return asdict(self)
 
     def read(self, stated: object) -> float | bool:
         """Parse the value of a request.

@@ -12,7 +12,7 @@ import time
 from collections import deque
 from collections.abc import AsyncIterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -67,7 +67,7 @@ def routes(opened: Opened) -> list[BaseRoute]:
 
     def controls(request: Request) -> Response:
         base = base_of(request.query_params.get("base"), bases)
-        return JSONResponse({"controls": [one.as_json() for one in base.controls]})
+        return JSONResponse({"controls": [asdict(one) for one in base.controls]})
 
     def sound(_: Request, request: dict[str, Any]) -> Response:
         blocks = sounds.stream(*sounds.started(request))

@@ -52,7 +52,6 @@ class Labels:
         self._table_state: tuple[int, ...] | None = None
         self._rows: list[list[Row]] = [[] for _ in jobs]
         self._others: list[Row] = []
-        self._summaries: list[dict[str, object] | None] = [None for _ in jobs]
         self._undo: list[_Correction] = []
         self._redo: list[_Correction] = []
         self._read_table()
@@ -74,10 +73,7 @@ class Labels:
         """Return the `summary` of each recording."""
         with self._lock:
             self.refresh()
-            for job in self._jobs:
-                if self._summaries[job.index] is None:
-                    self._summaries[job.index] = summary(job.index, job.name, self._rows[job.index])
-            return [shown for shown in self._summaries if shown is not None]
+            return [summary(job.index, job.name, self._rows[job.index]) for job in self._jobs]
 
     def rows(self, index: int) -> list[Row]:
         """Return the rows of a recording."""
@@ -169,18 +165,14 @@ class Labels:
 
     def _write(self, index: int, rows: list[Row]) -> None:
         before = self._rows[index]
-        self._put(index, rows)
+        self._rows[index] = rows
         try:
             rows = [*(row for of_one in self._rows for row in of_one), *self._others]
             LabelTable(rows).write(self.path)
             self._table_state = self._state()
         except BaseException:
-            self._put(index, before)
+            self._rows[index] = before
             raise
-
-    def _put(self, index: int, rows: list[Row]) -> None:
-        self._rows[index] = rows
-        self._summaries[index] = None
 
     def _read_table(self) -> None:
         state = self._state()  # before: what is written meanwhile is read again
@@ -192,10 +184,7 @@ class Labels:
         by_path: dict[Path | None, list[Row]] = {}
         for row in rows:
             by_path.setdefault(path_of[str(row["file"])], []).append(row)
-        for job in self._jobs:
-            of_one = by_path.pop(job.path, [])
-            if of_one != self._rows[job.index]:
-                self._put(job.index, of_one)
+        self._rows = [by_path.pop(job.path, []) for job in self._jobs]
         self._others = by_path.pop(None, [])
 
     def _state(self) -> tuple[int, ...] | None:

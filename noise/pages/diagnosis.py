@@ -280,29 +280,21 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | 
 
 
 _MOST_PLACES = 12
-_LEAST_REACH = 0.05  # of the axis of relative parameters, to either side of 1
 
 
-def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[b.Cell | str]]:
-    """Return rows of the refitted parameters: name, interval, and its bar about 1.
+def parameter_rows(intervals: Mapping[str, tuple[float, float]]) -> list[list[str]]:
+    """Return rows of the refitted parameters: name, interval, and whether it differs.
 
     Examples
     --------
-    >>> ((name, interval, cell),) = parameter_rows({"kinetic_torque": (1.02, 1.1)})
-    >>> interval, cell.text, [(round(bar.left), round(bar.width)) for bar in cell.bars]
-    ('1.020 to 1.100', 'differs', [(59, 36), (50, 0)])
+    >>> parameter_rows({"kinetic_torque": (1.02, 1.1)})
+    [['kinetic torque', '1.020 to 1.100', 'differs']]
     """
-    ends = [abs(end - 1.0) for interval in intervals.values() for end in interval]
-    reach = 1.1 * max([_LEAST_REACH, *ends])
-    rows: list[list[b.Cell | str]] = []
-    differing = parameters_off(intervals)
+    differing, rows = parameters_off(intervals), []
     for name, (low, high) in intervals.items():
-        off = name in differing
-        left, width = 50.0 * (1.0 + (low - 1.0) / reach), 50.0 * (high - low) / reach
-        bars = [b.Bar(left, width, "opened" if off else ""), b.Bar(50.0, 0.0, "mark")]
         agrees = "agrees with the rig file" if low <= 1.0 <= high else "no clear difference"
-        words = "differs" if off else agrees
-        rows.append([parameter_name(name), f"{low:.3f} to {high:.3f}", b.Cell(words, bars=bars)])
+        words = "differs" if name in differing else agrees
+        rows.append([parameter_name(name), f"{low:.3f} to {high:.3f}", words])
     return rows
 
 
@@ -345,7 +337,7 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
             places,
         ),
         _PARAMETERS: (
-            ("Parameter", "Interval", "About 1.0"), parameter_rows(diagnosis.parameters),
+            ("Parameter", "Interval", "Compared with 1"), parameter_rows(diagnosis.parameters),
         ),
     }  # fmt: skip
     missing = {

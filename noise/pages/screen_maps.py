@@ -9,7 +9,6 @@ points far from these; a click anywhere else plays the nearest.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -23,12 +22,12 @@ from models.errors import BushingNoiseError
 from models.rig import Rig
 from noise.audio.sound import audible
 from noise.base.labels import NAMED, PERSISTS
-from noise.base.progress import counted, track
+from noise.base.progress import track
 from noise.batch.work import one_thread
 from noise.pages.clips import RATE, Entry
 from noise.pages.maps import MAP_SIZE, ConditionMap, Spot, areas_of, axis_of
 from noise.pictures.figure import support_words
-from noise.screening.mapping import BEYOND, REFINED, UNCHANGED
+from noise.screening.mapping import REFINED
 from noise.screening.point import swing
 from sim.acquisition import Acquisition
 from sim.run import simulate
@@ -48,13 +47,6 @@ _MOST_SOUNDS = 12
 
 _NEAR = 0.05
 """Distance of points of the same labels that sound alike, as a share of the axes."""
-
-_HOW_WORDS = {
-    REFINED: "interpolated",
-    BEYOND: "not run: vibration dies before",
-    UNCHANGED: "as at another temperature or fit",
-}
-"""Words for the origin of a point."""
 
 _LEAST_HEIGHT, _ROW_HEIGHT = 180.0, 40.0
 """Height of a map: base and increment per interference [px]."""
@@ -164,15 +156,6 @@ def chosen_points(place: Place, most: int) -> list[tuple[int, int]]:
 
 
 @dataclass(frozen=True)
-class PlaceMaps:
-    """Maps of one place as they stand on the page: one per design."""
-
-    title: str
-    maps: tuple[ConditionMap, ...]
-    note: str
-
-
-@dataclass(frozen=True)
 class Compared:
     """Content of a comparison.
 
@@ -180,13 +163,14 @@ class Compared:
     ----------
     names : tuple of str
         Names of the designs.
-    places : tuple of PlaceMaps
+    places : tuple of (str, tuple of ConditionMap)
+        Title of each place, and its maps, one per design.
     pair : tuple of int
         Indices of the designs compared at first.
     """
 
     names: tuple[str, ...]
-    places: tuple[PlaceMaps, ...]
+    places: tuple[tuple[str, tuple[ConditionMap, ...]], ...]
     pair: tuple[int, int]
 
 
@@ -257,7 +241,7 @@ def compare_designs(
             _map(place, i, names, audible_points, silent.get(id(one), ""))
             for i, one in enumerate(place.maps)
         ]
-        laid.append(PlaceMaps(place.title, tuple(maps), _note(place, audible_points)))
+        laid.append((place.title, tuple(maps)))
     first, second = pair or (names[0], names[min(1, len(names) - 1)])
     return Compared(tuple(names), tuple(laid), (names.index(first), names.index(second))), sounds
 
@@ -336,18 +320,3 @@ def _map(
         f"No sounds: {silent}." if silent else "",
         "Largest speed" if grid.frequency else "Speed", height, names.index(design.design),
     )  # fmt: skip
-
-
-def _note(place: Place, points: Sequence[tuple[tuple[int, int], list[str]]]) -> str:
-    """Return the note of a place: number and origin of its points, number of sounds."""
-    how = place.of("how")
-    counts = Counter(how.ravel().tolist()).most_common()
-    known = "; ".join(f"{n} {_HOW_WORDS.get(word, word)}" for word, n in counts)
-    of_all = " of each design; of all" if len(place.maps) > 1 else ""
-    note = f"{counted(how[0].size, 'point')}{of_all}: {known}."
-    if n_sounds := sum(bool(key) for _, keys in points for key in keys):
-        note += (
-            f" {counted(n_sounds, 'sound')} simulated at the spots; a click elsewhere plays the "
-            "nearest of the same label."
-        )
-    return note

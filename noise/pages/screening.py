@@ -161,8 +161,9 @@ def write_screening(
 
 _SOUNDS = (
     "Sounds, all simulated with one seed, are at the spots: where each noise of each design is "
-    "loudest, amid the regions of each combination of noises, and far from these. A click there "
-    "plays it; A and B run in step, and the keys A and B change over."
+    "loudest, amid the regions of each combination of noises, and far from these. A click plays "
+    "the sound there, or the nearest of the same label. A and B run in step, and the keys A and B "
+    "change over."
 )
 
 

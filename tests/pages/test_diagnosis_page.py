@@ -96,16 +96,14 @@ def test_the_verdict_leads_the_causes_and_all_are_counted():
 
 def test_a_parameter_is_off_only_where_its_interval_excludes_one():
     rows = parameter_rows({"a": (0.9, 1.1), "b": (1.02, 1.1), "c": (0.8, 0.97)})
-    assert [cell.text == "differs" for _, _, cell in rows] == [False, True, True]
-    for _, _, cell in rows:
-        assert 0.0 <= cell.bars[0].left <= 100.0 - cell.bars[0].width
+    assert [words == "differs" for _, _, words in rows] == [False, True, True]
 
 
 def test_an_interval_that_just_misses_one_is_not_said_to_agree():
     agreeing = {f"agreeing_{i}": (0.94, 1.06) for i in range(4)}
     *same, last = parameter_rows(agreeing | {"elastomer_inertia": (0.871, 0.998)})
-    assert {cell.text for _, _, cell in same} == {"agrees with the rig file"}
-    assert last[2].text == "no clear difference"
+    assert {words for _, _, words in same} == {"agrees with the rig file"}
+    assert last[2] == "no clear difference"
 
 
 def test_the_changes_of_a_gap_are_those_of_the_figures_shown():

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from noise.app.jury import VOTES, Jury, in_words, random_pairs, scale
-from noise.base.labels import LABELS, MAP_LABELS, NAMED, PERSISTS
+from noise.base.labels import LABELS, NAMED, PERSISTS
 from noise.diagnosis.fit.closing import closed_fraction
 from noise.diagnosis.outcome import SURE, Agreement, EffectFinding, Location, StageFinding
 from noise.diagnosis.sentences import AGREES, answer, finding_of, fit_sentence
@@ -22,7 +22,6 @@ from noise.pages.cards import draw_entries
 from noise.pages.clips import Entry, label_counts, labels_sentence
 from noise.pages.diagnosis import write_diagnosis
 from noise.pages.identification import write_identification
-from noise.pages.screen_maps import compare_designs
 from noise.screening.grid import Grid
 from noise.screening.standing import critical_points, standing_of
 from noise.screening.summary import critical_words, margin_words, use_words
@@ -392,51 +391,3 @@ def test_the_summary_of_a_review_is_what_its_cards_show():
         for label, number in label_counts(entries.values()):
             cards = [one.labels for one in displays.values()]
             assert number == sum(label in labels if label else not labels for labels in cards)
-
-
-def drawn_screen(rng):
-    """A screening of one or two designs, as far as their maps are looked at."""
-    n_fits, n_speeds = (int(rng.integers(low, 7)) for low in (1, 2))
-    grid = Grid(
-        tuple(1.0 + np.arange(n_speeds)), (), tuple(1e-3 * (0.2 + 0.05 * np.arange(n_fits))),
-        (2214.0,), (23.0,), (1.0, 5.0),
-    )  # fmt: skip
-    shape = grid.shape
-
-    def drawn(*among):
-        return rng.choice(among, shape)
-
-    maps = []
-    for design in ("old", "new")[: int(rng.integers(1, 3))]:
-        label = drawn(*MAP_LABELS)
-        level = np.where(label == "none", np.nan, rng.uniform(40.0, 95.0, shape))
-        maps.append(
-            SimpleNamespace(
-                design=design, environment="dry", motion="steady", grid=grid, label=label,
-                level=level, regime=drawn("stick-slip"),
-                how=drawn(*WORDS_OF_HOW),
-            )
-        )  # fmt: skip
-    return SimpleNamespace(maps=tuple(maps))
-
-
-WORDS_OF_HOW = {
-    "simulated": "simulated", "refined": "interpolated",
-    "unchanged": "as at another temperature or fit",
-}  # fmt: skip
-
-
-def test_the_notes_of_a_comparison_are_what_its_maps_show():
-    for seed in range(DRAWS):
-        screening = drawn_screen(np.random.default_rng(seed))
-        maps = screening.maps
-        compared, _ = compare_designs(screening, ["no rig"] * len(maps), number=0, seed=0)
-        (place,) = compared.places
-        assert int(re.match(r"(\d+) point", place.note)[1]) == maps[0].label.size, place.note
-        for how, words in WORDS_OF_HOW.items():
-            stated = re.search(rf"(\d+) {words}", place.note)
-            number = sum(int((one.how == how).sum()) for one in maps)
-            assert int(stated[1] if stated else 0) == number, place.note
-        for one, drawn in zip(maps, place.maps, strict=True):
-            quiet = bool((one.label == "none").any())
-            assert any(area.label == "none" for area in drawn.areas) == quiet

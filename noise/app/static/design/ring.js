@@ -24,7 +24,6 @@ class Ring extends AudioWorkletProcessor {
       this.feed = data.feed;
       this.feed.onmessage = ({ data: block }) => this.take(block);
     }
-    if (data.aim !== undefined) this.aim = data.aim;
     if (data.stop) this.stopped = true;
   }
 
