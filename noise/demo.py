@@ -64,9 +64,6 @@ CASES = (
 _SECONDS = 2.0
 """Length of each recording [s]."""
 
-_RATE = 48_000
-"""Sampling rate of the audible sounds [Hz]."""
-
 
 def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
     """Simulate, render and label the four cases and write a report.
@@ -128,9 +125,9 @@ def run_demo(out: Path, *, seed: int = 0) -> list[dict[str, object]]:
 
 def _write_sound(recording: Recording, path: Path) -> None:
     """Write the audible sound of a recording."""
-    sound = audible(recording, _RATE)
+    sound = audible(recording)
     full_scale = max(QUIETEST_FULL_SCALE, common_full_scale([sound]))
-    write_audio(path, sound, _RATE, full_scale=full_scale, recording=recording)
+    write_audio(path, sound, full_scale=full_scale, recording=recording)
 
 
 ARM = 0.05

@@ -24,7 +24,7 @@ from noise.app.opened import Opened
 from noise.app.requests import choice, number, text
 from noise.app.sounds import SoundCache
 from noise.audio.render import Measured, full_scales, measure
-from noise.audio.sound import audible, refuse_mixed
+from noise.audio.sound import RATE, audible, refuse_mixed
 from noise.recordings.wav import wav_bytes
 
 MOST = 40
@@ -39,9 +39,6 @@ ONE_GAIN = "one gain"
 _LONGEST_TEXT = 200
 _LONGEST_WAIT = 1e6
 """Maximum time between comparison and vote [s]."""
-
-_RATE = 48000
-"""Sampling rate of playback [Hz]."""
 
 
 def routes(opened: Opened) -> list[BaseRoute]:
@@ -171,8 +168,8 @@ class JuryPlaying:
         BushingNoiseError
             The sounds cannot be played at one gain.
         """
-        sound = audible(self._sound_of(index), _RATE)
-        return wav_bytes(sound / self._full_scale(indices), _RATE, 32)
+        sound = audible(self._sound_of(index))
+        return wav_bytes(sound / self._full_scale(indices), RATE, 32)
 
     def _full_scale(self, indices: Sequence[int]) -> float:
         with self._lock:

@@ -26,7 +26,7 @@ from features.kernels.weighting import sound_levels
 from models.errors import ParameterError, RecordingError
 from models.recording import Channel, RecordingBlocks
 from noise.app.requests import number
-from noise.audio.sound import playable
+from noise.audio.sound import RATE, playable
 from noise.audio.spectrogram import (
     HIGHEST,
     LOWEST,
@@ -192,9 +192,6 @@ def read_stretch(query: Query, track: Track, longest: float = math.inf) -> tuple
     return first, last
 
 
-_RATE = 48000
-"""Sampling rate of playback [Hz]."""
-
 _LONGEST_PLAYED = 600.0
 """Maximum duration of one answer [s]."""
 
@@ -205,7 +202,7 @@ _LONGEST_BANDS = 120.0
 def wav(track: Track, query: Query) -> bytes:
     """Return an interval as a WAV file of floats in the unit of the channel."""
     first, last = read_stretch(query, track, _LONGEST_PLAYED)
-    return wav_bytes(playable(track.read(first, last), track.rate, _RATE), _RATE, 32)
+    return wav_bytes(playable(track.read(first, last), track.rate), RATE, 32)
 
 
 def bands(track: Track, query: Query) -> dict[str, object]:

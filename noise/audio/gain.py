@@ -38,6 +38,9 @@ TARGET_LOUDNESS = -23.0
 TARGET_TRUE_PEAK = -1.0
 """Largest true peak of matched sounds [dB re full scale] (EBU R 128)."""
 
+_HEADROOM = 3.0
+"""Of the largest peak of sounds with one gain [dB]."""
+
 _OVERSAMPLING = 4
 """ITU-R BS.1770, Annex 2, at 44.1 and 48 kHz."""
 
@@ -45,15 +48,13 @@ _BLOCK, _MARGIN = 1 << 19, 1 << 9
 """Samples oversampled at once, and how many beyond them the filter looks at."""
 
 
-def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float = 3.0) -> float:
-    """Return the common full scale of a set of sounds.
+def common_full_scale(signals: Iterable[NDArray[np.float64]]) -> float:
+    """Return the common full scale of a set of sounds, 3 dB above their largest peak.
 
     Parameters
     ----------
     signals : iterable of ndarray, shape (n_samples,)
         Sounds [unit of the sound], the same for all.
-    headroom_db : float
-        Distance of the largest peak from full scale [dB].
 
     Returns
     -------
@@ -63,11 +64,11 @@ def common_full_scale(signals: Iterable[NDArray[np.float64]], headroom_db: float
     Examples
     --------
     >>> quiet, loud = np.array([0.0, 0.1]), np.array([0.0, -2.0])
-    >>> round(common_full_scale([quiet, loud], headroom_db=6.0), 3)
-    3.991
+    >>> round(common_full_scale([quiet, loud]), 3)
+    2.825
     """
     peak = max((float(np.abs(signal).max(initial=0.0)) for signal in signals), default=0.0)
-    return peak * 10.0 ** (headroom_db / 20.0) or 1.0
+    return peak * 10.0 ** (_HEADROOM / 20.0) or 1.0
 
 
 def full_scale_without_clipping(peak: float) -> float:

@@ -262,7 +262,6 @@ def render(
     write_audio(
         path,
         samples,
-        RATE,
         full_scale=value,
         recording=_common([part.about for part in of.parts]),
         about={"render": file, "parts": [_entry(part, value) for part in of.parts]},
@@ -305,7 +304,6 @@ _BITS = 24
 def write_audio(
     path: str | Path,
     samples: NDArray[np.float64],
-    rate: int,
     *,
     full_scale: float,
     recording: Recording,
@@ -319,8 +317,6 @@ def write_audio(
         ``squeal`` and ``squeal.wav`` are the same; parent folders are made.
     samples : ndarray, shape (n_samples,)
         As `noise.audio.sound.audible` gives them.
-    rate : int
-        Sampling rate [Hz].
     full_scale : float
         Value of a full-scale sample, in the unit of `samples`.
     recording : Recording
@@ -346,7 +342,7 @@ def write_audio(
     >>> from noise.recordings import read_recording
     >>> run = Recording(np.full((1, 480), 0.25), 48e3, (Channel("pressure"),))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = write_audio(Path(folder) / "tone", run["pressure"], 48000, full_scale=2.0,
+    ...     path = write_audio(Path(folder) / "tone", run["pressure"], full_scale=2.0,
     ...                        recording=run)
     ...     float(read_recording(path)["pressure"].max())
     0.25
@@ -363,7 +359,7 @@ def write_audio(
     if recording.calibrated:
         content["channels"][0]["scale"] = full_scale
     description = with_full_scale(full_scale) if recording.calibrated else ""
-    data = wav_bytes(samples / full_scale, rate, _BITS, description=description)
+    data = wav_bytes(samples / full_scale, RATE, _BITS, description=description)
     text = json.dumps(content | dict(about or {}), indent=1) + "\n"
     with atomic(target) as wav, atomic(target.with_suffix(".json")) as sidecar:
         wav.write_bytes(data)

@@ -35,20 +35,18 @@ _FINEST_RATIO = 1000  # terms of the ratio of the rates; the pitch is right with
 _ORDER = 4  # of a band's ends, once
 
 
-def audible(recording: Recording, rate: int = 48000) -> NDArray[np.float64]:
+def audible(recording: Recording) -> NDArray[np.float64]:
     """Return the first pressure channel of a recording, prepared for listening.
 
     Parameters
     ----------
     recording : Recording
-    rate : int
-        Sampling rate of the result [Hz].
 
     Returns
     -------
     ndarray, shape (n_samples,)
-        Sound pressure [Pa], or in fractions of full scale where the recording is not calibrated;
-        without its mean.
+        At `RATE`: sound pressure [Pa], or in fractions of full scale where the recording is not
+        calibrated; without its mean.
 
     Raises
     ------
@@ -58,25 +56,21 @@ def audible(recording: Recording, rate: int = 48000) -> NDArray[np.float64]:
     Examples
     --------
     >>> run = Recording(np.ones((1, 3000)), 30e3, (Channel("pressure"),))
-    >>> audible(run).shape, audible(run, 44100).shape
-    ((4800,), (4410,))
+    >>> audible(run).shape
+    (4800,)
     """
-    return playable(recording[pressure_channel(recording).name], recording.rate, rate)
+    return playable(recording[pressure_channel(recording).name], recording.rate)
 
 
-def playable(
-    signal: NDArray[np.float64], rate: float, new_rate: int = 48000, *, fade: float = FADE
-) -> NDArray[np.float64]:
-    """Return a resampled signal without its mean, with fades.
+def playable(signal: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Return a signal at `RATE` without its mean, with fades.
 
     Parameters
     ----------
     signal : ndarray, shape (n_samples,)
         In any [unit].
-    rate, new_rate : float
-        Sampling rates [Hz].
-    fade : float
-        As of `audible` [s].
+    rate : float
+        Sampling rate [Hz].
 
     Returns
     -------
@@ -88,17 +82,12 @@ def playable(
     >>> playable(np.ones(3000), 30e3).shape
     (4800,)
     """
-    sound = resampled(signal - signal.mean(), rate, new_rate)
-    fade_ends(sound, round(fade * new_rate))
-    return sound
-
-
-def fade_ends(sound: NDArray[np.floating], n: int) -> None:
-    """Fade a sound in and out in place, over at most n samples each."""
-    n = min(n, sound.size // 2)
+    sound = resampled(signal - signal.mean(), rate, RATE)
+    n = min(round(FADE * RATE), sound.size // 2)
     flank = np.sin(0.5 * np.pi * (np.arange(n) + 0.5) / max(n, 1)) ** 2
     sound[:n] *= flank
     sound[sound.size - n :] *= flank[::-1]
+    return sound
 
 
 def pressure_channel(recording: Recording | RecordingBlocks) -> Channel:
@@ -286,7 +275,7 @@ def joined(
     times: list[tuple[float, float]] = []
     start = 0
     for recording in recordings:
-        sound = audible(recording, RATE)
+        sound = audible(recording)
         times.append((start / RATE, (start + sound.size) / RATE))
         pieces += [sound, np.zeros(round(gap * RATE))]
         start += sound.size + pieces[-1].size

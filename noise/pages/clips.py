@@ -22,15 +22,13 @@ from numpy.typing import NDArray
 from models.condition import Condition
 from models.recording import REFERENCE_PRESSURE
 from noise.audio.gain import full_scale_without_clipping, true_peak
+from noise.audio.sound import RATE
 from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.labels.summary import labels_in, naming_row
 from noise.recordings.wav import integers, largest_sample
 
 Row = Mapping[str, object]
-
-RATE = 48000
-"""Sampling rate of sounds on pages [Hz]."""
 
 
 @dataclass(frozen=True)

@@ -236,7 +236,7 @@ def illustration_entries(illustration: Illustration) -> dict[str, Entry]:
     for role in ROLES:
         recording = getattr(illustration, role)
         if recording is not None and recording.first("pressure") is not None:
-            sound = audible(recording, RATE)[: round(LONGEST * RATE)].astype(np.float32)
+            sound = audible(recording)[: round(LONGEST * RATE)].astype(np.float32)
             level = a_weighted_level(recording["pressure"], recording.rate)
             entries[role] = Entry(
                 f"{illustration.name}, {CURVES[role].label}",

@@ -30,7 +30,6 @@ from noise.labels.table import read_label_table, table_recordings
 from noise.pages import blocks as b
 from noise.pages.clips import (
     BYTES_A_SECOND,
-    RATE,
     Entry,
     Row,
     common_gain,
@@ -302,7 +301,7 @@ def _read_entry(
             offset = stretch_start(rows, duration, longest)
             excerpt, why = _excerpt(blocks, offset, longest)
             notes += [why] * bool(why)
-            sound = None if excerpt is None else audible(excerpt, RATE).astype(np.float32)
+            sound = None if excerpt is None else audible(excerpt).astype(np.float32)
     except BushingNoiseError as error:
         return Refusal.of(path, error)
     except OSError as error:  # it was there when the folder was searched

@@ -279,7 +279,7 @@ def _sound(
         rows=({"label": "none" if label == PERSISTS else label},),
         condition=replace(run.recording.condition, material=design.design),
         duration=SECONDS,
-        sound=audible(run.recording, RATE).astype(np.float32),
+        sound=audible(run.recording).astype(np.float32),
         note=note,
     )
 

@@ -32,18 +32,17 @@ def amplitude_at(sound, frequency, rate):
 
 
 @pytest.mark.parametrize("rate", [8000.0, 30e3, 44100.0, 48e3, 51200.0, 51199.87, 96e3])
-@pytest.mark.parametrize("new_rate", [44100, 48000])
-def test_a_tone_keeps_pitch_loudness_and_length(rate, new_rate):
-    sound = audible(tone(1046.0, rate), new_rate)
-    assert amplitude_at(sound, 1046.0, new_rate) == pytest.approx(1.0, abs=1e-3)
-    assert sound.size / new_rate == pytest.approx(0.5, abs=2 / min(rate, new_rate))
+def test_a_tone_keeps_pitch_loudness_and_length(rate):
+    sound = audible(tone(1046.0, rate))
+    assert amplitude_at(sound, 1046.0, 48000) == pytest.approx(1.0, abs=1e-3)
+    assert sound.size / 48000 == pytest.approx(0.5, abs=2 / min(rate, 48000))
 
 
 def test_nothing_folds_back_or_is_mirrored():
-    sound = audible(tone(14e3, 30e3), 48000)
+    sound = audible(tone(14e3, 30e3))
     assert amplitude_at(sound, 14e3, 48000) == pytest.approx(1.0, abs=1e-3)
     assert amplitude_at(sound, 16e3, 48000) < 1e-4
-    assert np.abs(audible(tone(30e3, 96e3), 48000)[1000:-1000]).max() < 1e-4
+    assert np.abs(audible(tone(30e3, 96e3))[1000:-1000]).max() < 1e-4
 
 
 def test_an_offset_is_not_heard():
@@ -65,21 +64,14 @@ def test_sound_fades_in_and_out():
 amplitudes = st.floats(1e-6, 1e4)
 
 
-@given(st.lists(amplitudes, min_size=1, max_size=5), st.floats(0.0, 40.0))
-def test_one_gain_for_a_set_puts_its_loudest_peak_at_the_headroom(peaks, headroom):
-    signals = [np.array([0.0, -peak]) for peak in peaks]
-    full_scale = common_full_scale(signals, headroom)
-    assert max(peaks) / full_scale == pytest.approx(10 ** (-headroom / 20))
-
-
 @settings(max_examples=40)
-@given(amplitudes, st.floats(0.0, 60.0), st.integers(0, 9))
-def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, headroom, seed):
+@given(amplitudes, st.integers(0, 9))
+def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, seed):
     samples = np.random.default_rng(seed).uniform(-peak, peak, 101)
-    full_scale = common_full_scale([samples], headroom + 0.001)
+    full_scale = common_full_scale([samples])
     path = tmp_path_factory.mktemp("audio") / "sound"
     recording = tone(500.0, 48e3)
-    file = write_audio(path, samples, 48000, full_scale=full_scale, recording=recording)
+    file = write_audio(path, samples, full_scale=full_scale, recording=recording)
     read = read_recording(file)
     resolution = full_scale * 2.0**-22
     assert read.calibrated
@@ -95,9 +87,7 @@ def test_written_sound_reads_back_calibrated(tmp_path_factory, peak, headroom, s
 
 def test_sound_without_calibration_gets_none(tmp_path):
     recording = replace(tone(500.0, 48e3), calibrated=False)
-    path = write_audio(
-        tmp_path / "s", recording["pressure"], 48000, full_scale=2.0, recording=recording
-    )
+    path = write_audio(tmp_path / "s", recording["pressure"], full_scale=2.0, recording=recording)
     assert json.loads(path.with_suffix(".json").read_text())["calibrated"] is False
     read = read_recording(path)
     assert not read.calibrated
@@ -109,7 +99,7 @@ def test_what_would_clip_is_not_written(tmp_path):
     for full_scale in (0.99, 0.0, -1.0, np.nan, np.inf):
         with pytest.raises(ParameterError, match="full scale"):
             write_audio(
-                *(tmp_path / "s", recording["pressure"], 48000),
+                *(tmp_path / "s", recording["pressure"]),
                 full_scale=full_scale, recording=recording,
             )  # fmt: skip
     assert list(tmp_path.iterdir()) == []
