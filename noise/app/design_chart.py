@@ -58,12 +58,11 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
     ('none everywhere: no creak, squawk or squeal', True)
     """
     rig = request.rig
-    low, high = rig.interference_range
     fastest = rig.fastest_fitted if math.isfinite(rig.fastest_fitted) else _FASTEST
     step, n_fits, simulations = _DETAIL[request.detail]
     use = Use(
         speed=tuple((step * np.arange(1, round(fastest / step) + 1)).tolist()),
-        interference=tuple(np.linspace(low, high, n_fits).tolist()) if high > low else (low,),
+        interference=_rows(rig, n_fits),
         support_stiffness=(request.support_stiffness,),
         temperature=(request.temperature,),
     )
@@ -93,3 +92,14 @@ def chart_of(request: ChartRequest) -> dict[str, object]:
         "legend": ", ".join(legend) or "none everywhere: no creak, squawk or squeal",
         "html": map_html(noises),
     }
+
+
+def _rows(rig: Rig, n: int) -> tuple[float, ...]:
+    """Return the interferences of the rows [m]: the rig's fits, and middles of the widest gaps."""
+    fits = [fit.interference for fit in rig.fits]
+    if len(fits) > n:
+        fits = [fits[i] for i in np.linspace(0, len(fits) - 1, n).round().astype(int)]
+    while 1 < len(fits) < n:
+        i = int(np.diff(fits).argmax())
+        fits.insert(i + 1, 0.5 * (fits[i] + fits[i + 1]))
+    return tuple(fits)

@@ -107,18 +107,12 @@ def _change(options: Namespace) -> Callable[[Rig], Rig] | None:
 
 def _use(options: Namespace) -> Use:
     """Return the conditions that the options state."""
-    from noise.screening import design as axes
+    from noise.screening.design import AXES, read_use
 
-    fits = axes.axis_values(options.interference, "--interference")
-    if fits and fits[-1] > 10.0:
-        raise ParameterError(f"--interference is {fits[-1]:g} mm; it must be at most 10")
-    stiffness = axes.axis_values(options.support_stiffness, "--support-stiffness", axes.SUPPORT)
-    return axes.Use(
-        speed=axes.axis_values(options.speed, "--speed", axes.SPEED),
-        interference=tuple(1e-3 * fit for fit in fits),
-        support_stiffness=stiffness,
-        temperature=axes.axis_values(options.temperature, "--temperature", axes.TEMPERATURE),
-        swinging=None if options.oscillate is None else _swinging(options.oscillate),
+    return read_use(
+        {axis: getattr(options, axis) for axis in AXES},
+        {axis: f"--{axis.replace('_', '-')}" for axis in AXES},
+        None if options.oscillate is None else _swinging(options.oscillate),
     )
 
 

@@ -18,11 +18,11 @@ from noise.screening.environments import environment, in_environment
 from noise.screening.standing import SHARED, Standing
 from noise.screening.summary import (
     MARGIN_RULE,
+    RANKING_RULE,
     conditions_words,
     detail_lines,
     margin_is_bound,
     percent,
-    ranking_words,
     use_words,
 )
 
@@ -77,9 +77,8 @@ def _margin(one: Standing) -> str:
     if math.isinf(margin):
         return "nothing vibrates"
     text = f"{margin:+.3g} rad/s".replace("-", "\N{MINUS SIGN}")
-    if margin_is_bound(margin, one.mapped.grid):
-        return f"at least {text}: vibration does not end within the map"
-    return text
+    bound = margin_is_bound(margin, one.mapped.grid)
+    return f"{text}, to slower speeds: vibration does not end within the map" if bound else text
 
 
 def write_screening(
@@ -133,7 +132,7 @@ def write_screening(
         "screening",
         _title(screening),
         [
-            b.Text(ranking_words(screening.standings), "summary"),
+            b.Text(f"{RANKING_RULE}." * (len(screening.designs) > 1), "summary"),
             b.Sounds(gain.sentences, MAP_LABELS),
         ],
         [

@@ -98,8 +98,12 @@ class Offer:
         >>> Offer("critical_torque", 10.7, -20, True).words
         'critical torque -20 % to 8.56 Nm'
         """
-        to = f"{self.value:.4g} {PARAMETERS[self.name]}"
-        return f"{self.name.replace('_', ' ')} {self.percent:+d} % to {to}"
+        return f"{self.short} to {self.value:.4g} {PARAMETERS[self.name]}"
+
+    @property
+    def short(self) -> str:
+        """The change without the new value."""
+        return f"{self.name.replace('_', ' ')} {self.percent:+d} %"
 
 
 def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Condition]:
@@ -130,7 +134,11 @@ def changed(rig: Rig, at: Condition, name: str, percent: float) -> tuple[Rig, Co
     models.errors.ParameterError: ...
     """
     if name in FIT_PARAMETERS:
-        return rig.changed(**{name: f"{percent:+g} %"}), at
+        try:
+            return rig.changed(**{name: f"{percent:+g} %"}), at
+        except ParameterError as error:
+            reason = str(error).removeprefix(f"rig {rig.name!r}: ")
+            raise ParameterError(f"a rig file changes all of its fits; {reason}") from None
     value = getattr(at, name) * (1.0 + percent / 100.0)
     if name == "interference":
         low, high = rig.interference_range
@@ -179,61 +187,59 @@ def advise(
         offers: list[Offer] = work(
             delayed(_offer)(rig, at, noise, name, way) for name in names for way in (-1, 1)
         )
-        trials = [(i, other) for i, offer in enumerate(offers) if offer.ends for other in elsewhere]
-        quiet = work(delayed(_ends_at)(rig, other, offers[i]) for i, other in trials)
-    stays: dict[int, list[Condition]] = {}
-    for (i, other), ends in zip(trials, quiet, strict=True):
-        stays.setdefault(i, []).extend([] if ends else [other])
-    counted = [
-        replace(
-            offer,
-            quiet_elsewhere=len(elsewhere) - len(stays[i]),
-            elsewhere=len(elsewhere),
-            left=next(iter(stays[i]), None),
-        )
-        if i in stays
-        else offer
-        for i, offer in enumerate(offers)
-    ]
-    return tuple(sorted(counted, key=_order))
+        trials = [(other, offer) for offer in offers if offer.ends for other in elsewhere]
+        quiet = iter(work(delayed(_ends_at)(rig, *trial) for trial in trials))
+    for i, offer in enumerate(offers):
+        if offer.ends:
+            left = [other for other in elsewhere if not next(quiet)]
+            offers[i] = replace(
+                offer,
+                quiet_elsewhere=len(elsewhere) - len(left),
+                elsewhere=len(elsewhere),
+                left=left[0] if left else None,
+            )
 
+    def order(offer: Offer) -> tuple[bool, int, int]:
+        return not offer.ends, -offer.quiet_elsewhere, abs(offer.percent)
 
-def _order(offer: Offer) -> tuple[bool, int, int]:
-    return not offer.ends, -offer.quiet_elsewhere, abs(offer.percent)
+    return tuple(sorted(offers, key=order))
 
 
 def _offer(rig: Rig, at: Condition, noise: Course, name: str, way: int) -> Offer:
     """Return the smallest change in one direction that ends the noise with a margin."""
-    nominal = nominal_values(rig, at)[name]
-    steps = [way * step for step in STEPS if way > 0 or step <= MOST_DOWN]
-    known: dict[int, str] = {}
-    limit = ""
+    steps: list[int] = []
+    limit, known = "", dict[int, str]()
+    for step in STEPS:
+        if way * step < -MOST_DOWN:
+            break
+        try:
+            changed(rig, at, name, way * step)
+        except ParameterError as error:
+            limit = str(error)
+            break
+        steps.append(way * step)
 
     def ends(percent: int) -> bool:
         if percent not in known:
             known[percent] = _state(*changed(rig, at, name, percent), noise)
         return known[percent] == "none"
 
-    def from_rest() -> int | None:
-        return next((one for one in steps if known.get(one) == PERSISTS), None)
-
-    last = 0
-    for i, percent in enumerate(steps):
-        try:
-            changed(rig, at, name, percent)
-        except ParameterError as error:
-            limit = str(error)
-            break
-        last = percent
-        if not (ends(percent) and ends(percent - way * MARGIN)):
-            continue
-        try:
-            beyond = i + 1 == len(steps) or ends(steps[i + 1])
-        except ParameterError:
-            beyond = True
-        if beyond:
-            return Offer(name, nominal, percent, True, from_rest=from_rest())
-    return Offer(name, nominal, last, False, limit, from_rest())
+    ending = next(
+        (
+            percent
+            for percent, beyond in zip(steps, steps[1:] + steps[-1:], strict=True)
+            if ends(percent) and ends(percent - way * MARGIN) and ends(beyond)
+        ),
+        None,
+    )
+    return Offer(
+        name,
+        nominal_values(rig, at)[name],
+        ending or max(steps, key=abs, default=0),
+        ends=ending is not None,
+        limit="" if ending else limit,
+        from_rest=next((one for one in steps if known.get(one) == PERSISTS), None),
+    )
 
 
 def _state(rig: Rig, at: Condition, noise: Course | None = None) -> str:

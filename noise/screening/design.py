@@ -29,6 +29,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -41,15 +42,6 @@ from models.rig_file import load_material_rig, material_names, read_toml, rig_fr
 from models.schema import as_table, as_text, number, refuse_unknown
 from models.show import short_repr
 from models.units import ABSOLUTE_ZERO
-
-_USE_KEYS = {
-    "name",
-    "speed_rad_s",
-    "interference_mm",
-    "support_stiffness_Nm_rad",
-    "temperature_C",
-    "oscillation",
-}
 
 PARAMETERS = {
     "elastomer_stiffness": "Nm/rad",
@@ -198,23 +190,25 @@ def load_design(given: str | Path) -> Design:
         return Design(name, load_material_rig(name))
     where = f"design {path}"
     with refusing(where, "design"):
-        return _read_design(path, where)
-
-
-def _read_design(path: Path, where: str) -> Design:
-    content = read_toml(path, where)
-    plain = {key: value for key, value in content.items() if key not in ("design", "tolerances")}
-    rig = rig_from(plain, path.parent, where)
-    table = as_table(_stated("design", content, path.parent, where), "design", where)
-    tolerances = _stated("tolerances", content, path.parent, where)
-    refuse_unknown(table, _USE_KEYS, f"{where}, design")
-    named = table.get("name", content.get("name", path.stem))
-    return Design(
-        name=as_text(named, "name", f"{where}, design"),
-        rig=rig,
-        use=_use(table, f"{where}, design"),
-        tolerances=read_tolerances(tolerances, where, rig.effects),
-    )
+        content = read_toml(path, where)
+        plain = {key: content[key] for key in content if key not in ("design", "tolerances")}
+        rig = rig_from(plain, path.parent, where)
+        table = as_table(_stated("design", content, path.parent, where), "design", where)
+        tolerances = _stated("tolerances", content, path.parent, where)
+        inside = f"{where}, design"
+        keys = {axis: key for axis, (key, _) in AXES.items()}
+        refuse_unknown(table, {"name", "oscillation", *keys.values()}, inside)
+        named = table.get("name", content.get("name", path.stem))
+        return Design(
+            name=as_text(named, "name", inside),
+            rig=rig,
+            use=read_use(
+                {axis: table.get(key) for axis, key in keys.items()},
+                {axis: f"{inside}: {key}" for axis, key in keys.items()},
+                _swinging(table.get("oscillation"), inside),
+            ),
+            tolerances=read_tolerances(tolerances, where, rig.effects),
+        )
 
 
 def _stated(key: str, content: Mapping[str, Any], folder: Path, where: str) -> Any:
@@ -230,25 +224,35 @@ def _stated(key: str, content: Mapping[str, Any], folder: Path, where: str) -> A
     return table
 
 
-def _use(table: Mapping[str, object], where: str) -> Use:
-    fits = axis_values(table.get("interference_mm"), f"{where}: interference_mm")
-    if fits and fits[-1] >= 10.0:
-        raise ParameterError(f"{where}: interference_mm = {fits[-1]:g} must be below 10")
-    speed, support, temperature = (
-        axis_values(table.get(key), f"{where}: {key}", rule)
-        for key, rule in (
-            ("speed_rad_s", SPEED),
-            ("support_stiffness_Nm_rad", SUPPORT),
-            ("temperature_C", TEMPERATURE),
-        )
-    )
-    return Use(
-        speed=speed,
-        interference=tuple(1e-3 * fit for fit in fits),
-        support_stiffness=support,
-        temperature=temperature,
-        swinging=_swinging(table.get("oscillation"), where),
-    )
+def read_use(
+    given: Mapping[str, object], names: Mapping[str, str], swinging: Swinging | None
+) -> Use:
+    """Read the operating conditions of a use.
+
+    Parameters
+    ----------
+    given : mapping of str to object
+        Values by the keys of `AXES`, as for `axis_values`, in the units of a design file.
+    names : mapping of str to str
+        Names of the axes in messages.
+    swinging : Swinging, optional
+
+    Raises
+    ------
+    ParameterError
+        A value cannot be used.
+
+    Examples
+    --------
+    >>> names = {axis: f"--{axis}" for axis in AXES}
+    >>> read_use({"speed": "1..2/3", "interference": 0.25}, names, None).speed
+    (1.0, 1.5, 2.0)
+    """
+    values = {axis: axis_values(given.get(axis), names[axis], AXES[axis][1]) for axis in AXES}
+    fits = values["interference"]
+    if fits and fits[-1] > 10.0:
+        raise ParameterError(f"{names['interference']} is {fits[-1]:g} mm; it must be at most 10")
+    return Use(**values | {"interference": tuple(1e-3 * fit for fit in fits)}, swinging=swinging)
 
 
 def _swinging(given: object, where: str) -> Swinging | None:
@@ -403,10 +407,15 @@ class AxisRule:
 
 
 POSITIVE = AxisRule()
-SPEED = AxisRule(step=SPEED_STEP)
 FREQUENCY = AxisRule(step=0.25)
-SUPPORT = AxisRule(fixed=True)
-TEMPERATURE = AxisRule(points=3, low=ABSOLUTE_ZERO)
+
+AXES = {
+    "speed": ("speed_rad_s", AxisRule(step=SPEED_STEP)),
+    "interference": ("interference_mm", POSITIVE),
+    "support_stiffness": ("support_stiffness_Nm_rad", AxisRule(fixed=True)),
+    "temperature": ("temperature_C", AxisRule(points=3, low=ABSOLUTE_ZERO)),
+}
+"""Key in a design file and rule of each axis of a `Use`."""
 
 
 def spread(low: float, high: float, points: int) -> tuple[float, ...]:
@@ -451,32 +460,52 @@ def axis_values(given: object, what: str, rule: AxisRule = POSITIVE) -> tuple[fl
 
     Examples
     --------
-    >>> axis_values("1..2/3", "--speed"), axis_values("fixed,2214", "-k", SUPPORT)
+    >>> axis_values("1..2/3", "--speed"), axis_values("fixed,2214", "-k", AxisRule(fixed=True))
     ((1.0, 1.5, 2.0), (2214.0, inf))
     >>> axis_values([0.178, 0.279], "interference_mm"), axis_values("1..2/2", "speed_rad_s")
     ((0.178, 0.279), (1.0, 2.0))
     """
     if given is None:
         return ()
-    values: list[float] = []
+    numbers: list[float] = []
     for item in given if isinstance(given, list) else [given]:
         if isinstance(item, str):
             for part in item.split(","):
-                values += _part_values(part, what, item, rule)
+                numbers += _part_values(part, what, item, rule)
         elif isinstance(item, int | float) and not isinstance(item, bool):
-            values.append(float(item))
+            numbers.append(float(item))
         else:
             raise ParameterError(f"{what} = {given!r}: give numbers, or a range such as '0.25..13'")
-    return _checked(values, what, str(given), rule)
+    values = sorted(set(numbers))
+    if not values:
+        raise ParameterError(f"{what} is empty; give at least one value")
+    finite = rule.fixed or math.isfinite(values[-1])
+    if not values[0] > rule.low or math.isnan(values[-1]) or not finite:
+        raise ParameterError(f"{what} is {given!r}; values must be above {rule.low:g} and finite")
+    if len(values) > MOST_POINTS:
+        raise ParameterError(f"{what} has {len(values)} values; at most {MOST_POINTS} are mapped")
+    return tuple(values)
 
 
 def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[float, ...]:
     """Parse the text between two commas: a number or a range."""
+
+    def value(text: str, *, fixed: bool = False) -> float:
+        if fixed and text.strip().lower() == "fixed":
+            return FIXED
+        with suppress(ValueError):
+            if math.isfinite(parsed := float(text)):
+                return parsed
+        word = ", or fixed" if fixed else ""
+        raise ParameterError(
+            f"{what} is {whole!r}, expected numbers such as 5, 1,2.5,5 or 0.25..13/52{word}"
+        )
+
     first, dots, rest = part.partition("..")
     if not dots:
-        return (_value(part, what, whole, fixed=rule.fixed),)
+        return (value(part, fixed=rule.fixed),)
     last, slash, count = rest.partition("/")
-    start, end = _value(first, what, whole), _value(last, what, whole)
+    start, end = value(first), value(last)
     if not start < end:
         raise ParameterError(f"{what} is {whole!r}: a range rises, as 0.25..13 does")
     if slash and not (count.strip().isdecimal() and 2 <= int(count) <= MOST_POINTS):
@@ -508,30 +537,3 @@ def axis_words(values: Sequence[float], most: int = 4) -> str:
     if len(texts) > most:
         return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
     return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
-
-
-def _value(text: str, what: str, whole: str, *, fixed: bool = False) -> float:
-    if fixed and text.strip().lower() == "fixed":
-        return FIXED
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        word = ", or fixed" if fixed else ""
-        raise ParameterError(
-            f"{what} is {whole!r}, expected numbers such as 5, 1,2.5,5 or 0.25..13/52{word}"
-        )
-    return value
-
-
-def _checked(numbers: list[float], what: str, text: str, rule: AxisRule) -> tuple[float, ...]:
-    values = sorted(set(numbers))
-    if not values:
-        raise ParameterError(f"{what} is empty; give at least one value")
-    finite = rule.fixed or math.isfinite(values[-1])
-    if not values[0] > rule.low or math.isnan(values[-1]) or not finite:
-        raise ParameterError(f"{what} is {text!r}; values must be above {rule.low:g} and finite")
-    if len(values) > MOST_POINTS:
-        raise ParameterError(f"{what} has {len(values)} values; at most {MOST_POINTS} are mapped")
-    return tuple(values)

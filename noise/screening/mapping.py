@@ -12,13 +12,13 @@ is stable a vibration may persist (`noise.screening.vibration`), from where it i
 some speed; beyond a speed at which it has died there is nothing to simulate.
 
 Where the material does not say how temperature acts the map of one temperature is that of all, and
-where the properties of the nearest fit are held so is the row of that fit; the copies say so.
+where the properties of the nearest fit are held so is the row of that fit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -43,9 +43,9 @@ REGIMES = (Regime.STEADY_SLIDING, Regime.QUASI_HARMONIC, Regime.STICK_SLIP)
 LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
-SIMULATED, REFINED, BEYOND, UNCHANGED = ("simulated", "refined", "beyond", "unchanged")
+SIMULATED, REFINED, BEYOND = ("simulated", "refined", "beyond")
 """Origin of a point: simulated; as the simulated points around it; skipped, since a running
-vibration dies at a speed between it and unstable sliding; as at another temperature or fit."""
+vibration dies at a speed between it and unstable sliding."""
 
 STRIDE = 8
 """Points from corner to corner of the coarse cells."""
@@ -83,7 +83,7 @@ class DesignMap:
     level, level_max : ndarray, shape of the grid
         L_Aeq and L_AFmax [dB re 20 uPa]; NaN where the contact slides steadily.
     how : ndarray of str, shape of the grid
-        Of `HOW`.
+        ``simulated``, ``refined`` or ``beyond``.
     growth : ndarray, shape of the grid
         Growth rate of a small vibration about steady sliding [1/s]; NaN for a swinging shaft.
     open : int
@@ -117,7 +117,6 @@ def map_design(
     design: str,
     environment: str = "dry",
     most: int | None = None,
-    stride: int | None = None,
 ) -> DesignMap:
     """Simulate the map of a design over a grid.
 
@@ -132,8 +131,6 @@ def map_design(
         Names.
     most : int, optional
         Simulations, more or less.
-    stride : int, optional
-        Points from corner to corner of the coarse cells; 1 simulates all.
 
     Returns
     -------
@@ -144,14 +141,11 @@ def map_design(
     ParameterError
         If a condition cannot be simulated.
     """
-    known_by = (
-        np.arange(grid.shape[0]) if rig.temperature else np.zeros(grid.shape[0], dtype=int),
-        known_rows(rig, grid.interference),
-    )
-    temperature, interference = (
-        np.array(axis)[np.unique(known)]
-        for axis, known in zip((grid.temperature, grid.interference), known_by, strict=True)
-    )
+    # What has the same results is simulated once: temperatures that do not act, and held fits.
+    acting = grid.temperature if rig.temperature else (grid.temperature[0],) * grid.shape[0]
+    held = np.clip(grid.interference, *rig.interference_range)
+    temperature, plane_of = np.unique(acting, return_inverse=True)
+    interference, row_of = np.unique(held, return_inverse=True)
     support, speed = np.array(grid.support_stiffness), np.array(grid.speed)
     shape = (temperature.size, support.size, interference.size, speed.size)
     planes = (shape[0] * shape[1], shape[2], shape[3])
@@ -186,17 +180,19 @@ def map_design(
         simulate,
         grows=growth.reshape(planes) > 0.0,
         most=most,
-        stride=(
-            stride or _stride(interference, _FIT_APART),
-            stride or _stride(speed, _SPEED_APART),
-        ),
+        stride=(_stride(interference, _FIT_APART), _stride(speed, _SPEED_APART)),
     )
-    code = refined.codes.reshape(shape)
+
+    def on_grid(planes: NDArray[Any]) -> NDArray[Any]:
+        return planes.reshape(shape)[plane_of][:, :, row_of]
+
+    code = on_grid(refined.codes)
     kind = code // len(REGIMES)
     sound = np.array(LABELS)[kind % len(LABELS)]
-    physics = interpolated(values[0], refined, nearest=1).reshape(shape).astype(int)
-    level, level_max = (interpolated(one, refined).reshape(shape) for one in values[1:])
-    mapped = DesignMap(
+    physics = on_grid(interpolated(values[0], refined, nearest=1)).astype(int)
+    level, level_max = (on_grid(interpolated(one, refined)) for one in values[1:])
+    beyond, simulated = on_grid(refined.beyond | ~ran), on_grid(refined.simulated)
+    return DesignMap(
         design=design,
         environment=environment,
         motion="swinging" if swings else "steady",
@@ -207,39 +203,10 @@ def map_design(
         physics=np.array(LABELS)[physics],
         level=level,
         level_max=level_max,
-        how=np.select(
-            [(refined.beyond | ~ran).reshape(shape), refined.simulated.reshape(shape)],
-            [BEYOND, SIMULATED],
-            REFINED,
-        ),
-        growth=growth,
+        how=np.select([beyond, simulated], [BEYOND, SIMULATED], REFINED),
+        growth=on_grid(growth),
         open=refined.open,
     )
-    return _copied(mapped, *known_by)
-
-
-def known_rows(rig: Rig, interference: Sequence[float]) -> NDArray[np.int64]:
-    """Return for each row of a map the row that has its results: itself, or that of a held fit.
-
-    Parameters
-    ----------
-    rig : Rig
-    interference : sequence of float
-        Rising [m].
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> fits = [0.127e-3, 0.178e-3, 0.254e-3, 0.3e-3, 0.5e-3, 0.6e-3]
-    >>> known_rows(load_material_rig("PDMS"), fits).tolist()
-    [2, 2, 2, 3, 4, 4]
-    """
-    low, high = rig.interference_range
-    fits = np.array(interference)
-    rows = np.arange(fits.size)
-    rows[fits <= low] = rows[fits <= low].max(initial=-1)
-    rows[fits >= high] = rows[fits >= high].min(initial=fits.size)
-    return rows
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:
@@ -247,17 +214,6 @@ def _stride(values: NDArray[np.float64], apart: float) -> int:
     if values.size < 2:
         return STRIDE
     return max(1, min(STRIDE, round(apart / float(np.diff(values).max()))))
-
-
-def _copied(mapped: DesignMap, *known_by: NDArray[np.int64]) -> DesignMap:
-    """Repeat the rows of a map at all temperatures and fits that have the same results."""
-    at = [np.unique(known, return_inverse=True)[1] for known in known_by]
-    own = [known == np.arange(known.size) for known in known_by]
-    names = ("regime", "label", "sound", "physics", "level", "level_max", "how", "growth")
-    copies: dict[str, Any] = {name: getattr(mapped, name)[at[0]][:, :, at[1]] for name in names}
-    copied = ~(own[0][:, None, None, None] & own[1][:, None])
-    copies["how"] = np.where(copied, UNCHANGED, copies["how"])
-    return replace(mapped, **copies)
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,8 +274,8 @@ def refined_map(
     cells: list[Cell] = [
         (plane, top, bottom, left, right)
         for plane in range(planes)
-        for top, bottom in _rows(rows, stride[0])
-        for left, right in _intervals(columns, stride[1])
+        for top, bottom in _intervals(rows, stride[0], few=_FEW_ROWS)
+        for left, right in _intervals(columns, stride[1], few=1)
     ]
     settled: list[Cell] = []
     beyond, spent = np.zeros(shape, dtype=bool), 0
@@ -339,8 +295,8 @@ def refined_map(
         open_cells = [(urgency, cell) for urgency, cell in ranked if urgency and _halves(cell)]
         most_urgent = max((urgency for urgency, _ in open_cells), default=None)
         cut = [cell for urgency, cell in open_cells if urgency == most_urgent]
-        if most is not None:
-            cut = _spread_over(cut, max(0, most - spent) // _POINTS_A_CUT)
+        if most is not None and len(cut) > (room := max(0, most - spent) // _POINTS_A_CUT):
+            cut = [cut[i] for i in np.linspace(0, len(cut) - 1, room).astype(int)]
         taken = set(cut)
         settled = [cell for _, cell in ranked if cell not in taken]
         cells = [part for cell in cut for part in _halves(cell)]
@@ -389,25 +345,16 @@ def _urgency(
     return (2 if np.any(kinds != kinds[0]) else 1), size
 
 
-def _spread_over(cells: list[Cell], room: int) -> list[Cell]:
-    """Return evenly distributed cells, at most `room`."""
-    if len(cells) <= room:
-        return cells
-    return [cells[i] for i in np.linspace(0, len(cells) - 1, room).astype(int)]
+def _intervals(n: int, stride: int, *, few: int) -> list[tuple[int, int]]:
+    """Return 0 .. n - 1 split into intervals of about `stride` with common ends.
 
-
-def _intervals(n: int, stride: int) -> list[tuple[int, int]]:
-    """Return 0 .. n - 1 split into intervals of about `stride` with common ends."""
-    if n == 1:
-        return [(0, 0)]
+    Up to `few` numbers are intervals of their own, since rows of a map may lie far apart.
+    """
+    if n <= few:
+        return [(i, i) for i in range(n)]
     pieces = max(1, round((n - 1) / stride))
     ends = np.unique(np.linspace(0, n - 1, pieces + 1).round().astype(int)).tolist()
     return list(pairwise(ends))
-
-
-def _rows(n: int, stride: int) -> list[tuple[int, int]]:
-    """Return intervals of rows; few rows are single lines, since they lie far apart."""
-    return [(row, row) for row in range(n)] if n <= _FEW_ROWS else _intervals(n, stride)
 
 
 def _corners(cell: Cell) -> NDArray[np.int64]:

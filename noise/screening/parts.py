@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 from joblib import Parallel, delayed
-from numpy.typing import NDArray
 from scipy import stats
 
 from models.errors import ParameterError
@@ -24,10 +23,8 @@ from noise.batch.work import one_thread
 from noise.screening.design import Design, Tolerance
 from noise.screening.environments import FIT_PARAMETERS, scaled_fit
 from noise.screening.point import is_noisy
-from noise.screening.vibration import Condition
-from sim.analysis.stability import growth_of_parts
+from noise.screening.vibration import Condition, growth_at
 from sim.effects import EFFECTS
-from sim.temperature import at_temperature
 
 _SPEEDS = 9
 """Number of speeds of use at which the growth rate is computed."""
@@ -222,22 +219,15 @@ def noisy_parts(
     )
     names = [one.name for one in design.tolerances]
     drawn = [varied(design.rig, at, dict(zip(names, row, strict=True))) for row in factors.tolist()]
-    growth: NDArray[np.float64] = growth_of_parts(
-        [
-            (at_temperature(rig, own.temperature), own.interference, own.support_stiffness)
-            for rig, own in drawn
-        ],
-        speeds,
-    )
 
-    def noisy(rig: Rig, own: Condition, worst: float) -> bool:
-        tested = dict.fromkeys([own.speed, worst, float(speeds[0]), float(speeds[-1])])
+    def noisy(rig: Rig, own: Condition) -> bool:
+        worst = speeds[growth_at(rig, own, speeds).argmax()]
+        tested = dict.fromkeys([own.speed, *map(float, (worst, speeds[0], speeds[-1]))])
         return is_noisy(rig, [replace(own, speed=speed) for speed in tested])
 
-    worst = speeds[growth.argmax(axis=1)].tolist()
     with one_thread():
         results = Parallel(n_jobs=workers, prefer="threads")(
-            delayed(noisy)(*part, speed) for part, speed in zip(drawn, worst, strict=True)
+            delayed(noisy)(*part) for part in drawn
         )
     k = int(sum(results))
     interval = stats.binomtest(k, parts).proportion_ci(0.95, method="exact")

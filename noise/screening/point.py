@@ -20,7 +20,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -38,14 +38,8 @@ from noise.batch.journal import Journal
 from noise.batch.work import one_thread
 from noise.classifier import load_classifier
 from noise.labels.segments import file_label, label_recording
-from noise.noise_definition import LEAST_LEVEL, NoiseCriteria, noise_criteria
-from noise.screening.vibration import (
-    RATE,
-    Condition,
-    gone_on,
-    oscillation,
-    vibrations_at,
-)
+from noise.noise_definition import LEAST_LEVEL, noise_criteria
+from noise.screening.vibration import RATE, Condition, gone_on, oscillation, vibrations_at
 from sim.acquisition import Acquisition, sample
 from sim.analysis.regime import Regime, motion_slips
 from sim.chain import apply_chain_effects
@@ -151,7 +145,7 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
     """
     if row[0].frequency is not None:
         return [
-            audible_result(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency
+            _audible_result(rig, at, _motion(rig, at, at.frequency)) for at in row if at.frequency
         ]
     results = [SILENT] * len(row)
     for i, one in vibrations_at(rig, row):
@@ -159,10 +153,10 @@ def evaluate_row(rig: Rig, row: Sequence[Condition]) -> list[PointResult]:
             results[i] = replace(SILENT, simulated=False)
         elif one.course is not None:
             persists = one.state == PERSISTS
-            results[i] = audible_result(rig, row[i], one.course.motion, persists=persists)
+            results[i] = _audible_result(rig, row[i], one.course.motion, persists=persists)
             if results[i].label == "none":
                 longer = gone_on(one.course, _LONGER)
-                results[i] = audible_result(rig, row[i], longer, persists=persists, judged=_LONGER)
+                results[i] = _audible_result(rig, row[i], longer, persists=persists, judged=_LONGER)
     return results
 
 
@@ -189,25 +183,13 @@ def _last_part(motion: Motion, judged: float = JUDGED) -> Motion:
     return motion.part(max(0, motion.torque.size - round((judged + _RINGING) * RATE)))
 
 
-def audible_result(
+def _audible_result(
     rig: Rig, at: Condition, motion: Motion, *, persists: bool = False, judged: float = JUDGED
 ) -> PointResult:
     """Return regime, noise and level of a motion at a condition.
 
-    Parameters
-    ----------
-    rig : Rig
-    at : Condition
-    motion : Motion
-        Motion, of which the last part is judged; of a swing all but the first quarter of a cycle.
-    persists : bool
-        Value of `PointResult.persists`.
-    judged : float
-        Length of the judged end [s].
-
-    Returns
-    -------
-    PointResult
+    Of constant speed the last `judged` seconds count, of a swing all but the first quarter of a
+    cycle.
     """
     swings = at.frequency is not None
     if at.frequency is not None:
@@ -215,14 +197,16 @@ def audible_result(
     else:
         motion = _last_part(motion, judged)
         start = motion.torque.size - round(judged * RATE)
-    intervals = fast_intervals(motion.part(start), swings=swings)
+    whole = motion.part(start)
+    intervals = _fast_intervals(whole) if swings else [whole]
     if all(oscillation(interval.torque) <= 1.0 for interval in intervals):
         return SILENT
     rig = at_temperature(rig, at.temperature)
     sound = _sound(rig, at, motion)
     pressure, pulses = sound.pressure[start:], sound.pulse_pressure[start:]
     levels = _levels(pressure)
-    criteria, interval = _loudest_interval(pressure, pulses, intervals)
+    judged_parts = [(noise_criteria(one, pressure, pulses), one) for one in intervals]
+    criteria, interval = max(judged_parts, key=lambda each: each[0].audible)
     slips = motion_slips(interval.part(-round(_REGIME * RATE))).times.size > 0
     physics = criteria.label
     if swings and physics == "creak" and criteria.blows < 0.0:
@@ -276,52 +260,21 @@ def _motion(rig: Rig, at: Condition, frequency: float) -> Motion:
     )  # fmt: skip
 
 
-def fast_intervals(motion: Motion, *, swings: bool) -> list[Motion]:
-    """Return the parts of a motion at nearly constant speed.
+def _fast_intervals(motion: Motion) -> list[Motion]:
+    """Return the two longest parts of a swing at half its peak speed or more.
 
     Where the shaft turns back its torque turns from one side to the other, which is neither
     vibration nor noise. In between, the slow trend of the torque with the speed is taken off.
-
-    Parameters
-    ----------
-    motion : Motion
-        Of a whole swing, or at constant speed.
-    swings : bool
-
-    Returns
-    -------
-    list of Motion
-        All of it, or the two longest intervals at half the peak speed or more.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> from sim.motion import simulate_motion
-    >>> from sim.shaft import Oscillation
-    >>> motion = simulate_motion(load_material_rig("PDMS"), Oscillation(0.26, 4.0), rate=30e3,
-    ...                          interference=0.3e-3, support_stiffness=2214.0, seconds=0.25)
-    >>> [round(part.torque.size / motion.rate, 3) for part in fast_intervals(motion, swings=True)]
-    [0.083, 0.042]
     """
-    if not swings:
-        return [motion]
     fast = np.abs(motion.shaft_speed) >= _FAST_SHARE * np.abs(motion.shaft_speed).max()
     edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
-    pieces = sorted(edges.reshape(-1, 2), key=lambda edge: edge[0] - edge[1])[:2]
-    return [_piece(motion, first, last) for first, last in pieces]
-
-
-def _piece(motion: Motion, first: int, last: int) -> Motion:
-    """Return a part of a motion without the slow trend of its torque over a swing."""
-    values = {
-        field.name: getattr(motion, field.name)[first:last]
-        for field in fields(motion)
-        if field.name != "rate"
-    }
-    time = np.linspace(-1.0, 1.0, last - first)
-    trend = np.polynomial.Polynomial.fit(time, values["torque"], 3)(time)
-    values["torque"] = values["torque"] - trend + trend.mean()
-    return replace(motion, **values)
+    pieces = []
+    for first, last in sorted(edges.reshape(-1, 2), key=lambda edge: edge[0] - edge[1])[:2]:
+        piece = motion.part(first, last)
+        time = np.linspace(-1.0, 1.0, last - first)
+        trend = np.polynomial.Polynomial.fit(time, piece.torque, 3)(time)
+        pieces.append(replace(piece, torque=piece.torque - trend + trend.mean()))
+    return pieces
 
 
 def _paths(rig: Rig, interference: float, support_stiffness: float) -> ImpulseResponses:
@@ -332,14 +285,6 @@ def _paths(rig: Rig, interference: float, support_stiffness: float) -> ImpulseRe
         rounded = math.exp(round(math.log(of_beams) / _DAMPING_STEP) * _DAMPING_STEP)
         rig = replace(rig, elastomer_damping_share=1.0 - rounded / damping)
     return impulse_responses(rig, interference, support_stiffness, RATE)
-
-
-def _loudest_interval(
-    pressure: NDArray[np.float64], pulse_pressure: NDArray[np.float64], intervals: list[Motion]
-) -> tuple[NoiseCriteria, Motion]:
-    """Return the noise criteria of the loudest interval, and that interval."""
-    criteria = [(noise_criteria(one, pressure, pulse_pressure), one) for one in intervals]
-    return max(criteria, key=lambda one: one[0].audible)
 
 
 # --- batches of points ---------------------------------------------------------------------------

@@ -37,15 +37,8 @@ from noise.screening.grid import Grid, fits_remark, shared_grid, shared_motions
 from noise.screening.mapping import SIMULATED, DesignMap, map_design
 from noise.screening.parts import noisy_parts
 from noise.screening.point import batch_evaluator, keeping
-from noise.screening.standing import (
-    Standing,
-    condition_at,
-    ranked,
-    standing_of,
-)
+from noise.screening.standing import Standing, condition_at, ranked, standing_of
 from noise.screening.vibration import Condition
-from sim.analysis.critical_speeds import motion_from_rest
-from sim.analysis.regime import never_slips
 from sim.effects import EFFECTS
 
 if TYPE_CHECKING:
@@ -54,6 +47,9 @@ if TYPE_CHECKING:
 
 DEFAULT_SIMULATIONS = 500
 """Of a map, more or less."""
+
+_STATISTICS = 150
+"""Points of a map that take as long as its advice and tolerances."""
 
 _ONE_SWING = 2
 """Motions up to which no swing needs a name: constant speed and one swing."""
@@ -234,10 +230,16 @@ def screen(
         for name in names
         for swinging in motions
     }
-    work = _Work(advance, len(loaded) * len(grids), simulations)
+    total, done = len(loaded) * len(grids) * (simulations + _STATISTICS), 0
+
+    def work_on(points: int) -> None:
+        nonlocal done
+        done += points
+        advance(min(1.0, done / total))
+
     maps: list[DesignMap] = []
     notes: dict[tuple[str, str], list[str]] = {}
-    evaluate = batch_evaluator(workers=workers, advance=work.add)
+    evaluate = batch_evaluator(workers=workers, advance=work_on)
     if journal is not None:
         evaluate = keeping(evaluate, journal)
     for name, design in loaded.items():
@@ -257,7 +259,7 @@ def screen(
                     degrees = math.degrees(swinging.amplitude)
                     one = replace(one, motion=f"swinging by {degrees:.4g} degrees")
                 of_design.append(one)
-                work.map_done()
+                work_on((len(maps) + len(of_design)) * simulations - done)  # whatever it took
         except BushingNoiseError as error:
             refused.append((name, str(error)))
         else:
@@ -271,17 +273,22 @@ def screen(
         design = replace(design, rig=in_environment(design.rig, environment(one.environment)))
         standing = standing_of(one)
         standing = replace(standing, notes=tuple(notes[one.design, one.environment]))
+        loudest, steady = standing.loudest, one.motion == "steady"
         try:
-            if one.motion == "steady" and standing.loudest is not None:
+            if steady and loudest is not None:
                 progress(f"advice for {one.design}, {one.environment}")
-                standing = _advised(standing, standing.loudest, design.rig, workers)
-            if one.motion == "steady" and tolerances and design.tolerances:
+                others = _other_noisy(one, loudest)
+                offers = advise(design.rig, loudest, others, workers=workers)
+                standing = replace(standing, offers=offers)
+            if steady and tolerances and design.tolerances:
                 progress(f"tolerances of {one.design}, {one.environment}")
-                standing = _with_parts(standing, design, stream, workers)
+                at, use = loudest or _middle(one.grid), one.grid.use
+                parts = noisy_parts(design, at, use, stream, workers=workers)
+                standing = replace(standing, parts=parts)
         except _FAILURES as error:
             refused.append((f"{one.design}, in part", f"advice or tolerances: {error}"))
         standings.append(standing)
-        work.add(_STATISTICS)
+        work_on(_STATISTICS)
     screened = {one.design: loaded[one.design] for one in maps}
     return Screening(
         designs=tuple(screened.values()),
@@ -292,44 +299,10 @@ def screen(
     )
 
 
-_STATISTICS = 150
-"""Points of a map that take as long as its advice and tolerances."""
-
-
-class _Work:
-    """Share of all work that is done, counted in simulated points."""
-
-    def __init__(self, advance: Callable[[float], None], n_maps: int, of_map: int) -> None:
-        self._advance, self._of_map, self._maps, self._done = advance, of_map, 0, 0
-        self._total = n_maps * (of_map + _STATISTICS)
-
-    def add(self, points: int) -> None:
-        self._done += points
-        self._advance(min(1.0, self._done / self._total))
-
-    def map_done(self) -> None:
-        """Count a map as whole, whatever it took."""
-        self._maps += 1
-        self._done = self._maps * self._of_map
-        self.add(0)
-
-
-def _advised(standing: Standing, loudest: Condition, rig: Rig, workers: int) -> Standing:
-    """Add the changes that end the loudest noise."""
-    others = _other_noisy(standing.mapped, loudest)
-    return replace(standing, offers=advise(rig, loudest, others, workers=workers))
-
-
-def _with_parts(
-    standing: Standing, design: Design, rng: np.random.Generator, workers: int
-) -> Standing:
-    """Add what tolerances do."""
-    grid = standing.mapped.grid
+def _middle(grid: Grid) -> Condition:
+    """Return the condition in the middle of a use."""
     axes = grid.interference, grid.support_stiffness, grid.temperature
-    middle = (axis[(len(axis) - 1) // 2] for axis in axes)
-    at = standing.loudest or Condition(0.5 * sum(grid.use), *middle)
-    parts = noisy_parts(design, at, grid.use, rng, workers=workers)
-    return replace(standing, parts=parts)
+    return Condition(0.5 * sum(grid.use), *(axis[(len(axis) - 1) // 2] for axis in axes))
 
 
 def _other_noisy(mapped: DesignMap, loudest: Condition) -> list[Condition]:
@@ -377,18 +350,13 @@ def refuse_never_slipping(rig: Rig, grid: Grid) -> None:
     """
     if grid.frequency:
         return
-    twist, torque, interference, support = min(
-        (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque, at, support)
-        for at, support in itertools.product(grid.interference, grid.support_stiffness)
-        for fit in (rig.fit(at),)
+    fits = [rig.fit(interference) for interference in grid.interference]
+    twist, torque = min(
+        (fit.critical_torque / effective_stiffness(fit, support), fit.critical_torque)
+        for fit, support in itertools.product(fits, grid.support_stiffness)
     )
-    fastest = grid.use[1]
-    if twist <= min(fastest * _LONGEST_WINDING, _MOST_TWIST):
+    if twist <= min(grid.use[1] * _LONGEST_WINDING, _MOST_TWIST):
         return
-    if twist <= _MOST_TWIST:
-        motion = motion_from_rest(rig, fastest, interference, support, seconds=_LONGEST_WINDING)
-        if not never_slips(motion):
-            return
     raise ParameterError(
         f"never slips: the contact holds {torque:g} Nm, for which the shaft winds the bushing up "
         f"by {twist:.3g} rad; are torque and stiffness in their units?"
@@ -403,16 +371,14 @@ def _remarks(
 ) -> list[str]:
     """Return remarks on the data of a design in an environment."""
     here = [grid for (name, _), grid in grids.items() if name == where]
-    rig, grid = design.rig, here[0]
+    rig, fits = design.rig, here[0].interference
     temperature = sorted({value for each in here for value in each.temperature})
+    speed = [max(each.use[1] for each in here)]
     remarks = use_remarks(
-        rig,
-        speed=[max(each.use[1] for each in here)],
-        interference=grid.interference,
-        support_stiffness=grid.support_stiffness,
+        rig, speed=speed, interference=fits, support_stiffness=here[0].support_stiffness,
         temperature=temperature,
-    )
-    remarks.append(fits_remark(rig, grid.interference))
+    )  # fmt: skip
+    remarks.append(fits_remark(rig, fits))
     if rig.temperature or (given is not None and given.temperature) or len(temperature) > 1:
         remarks.append(temperature_remark(rig, *temperature))
     remarks += effect_remarks(in_environment(rig, environment(where)), EFFECTS)

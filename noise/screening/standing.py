@@ -36,63 +36,40 @@ SHARED = ("creak", "squawk", "squeal", "none", PERSISTS)
 """Labels of a map whose shares are reported."""
 
 
-@dataclass(frozen=True)
-class CriticalPoint:
-    """Critical speeds at one temperature, support and fit, all in rad/s.
+def critical_speeds_of(mapped: DesignMap) -> dict[str, NDArray[np.float64]]:
+    """Return critical speeds and margins by temperature, support and fit; none for a swing.
 
     Parameters
     ----------
-    temperature : float
-        [degree Celsius]
-    interference : float
-        [m]
-    support_stiffness : float
-        [Nm/rad]
-    v_crit1, v_crit1_high, v_crit2, v_crit2_high : float
-        By simulation, and the next speed of the map, at which it no longer sticks, or vibrates
-        [rad/s]; 0 if there is none, ``inf`` beyond the map.
-    v_crit2_stability : float
-        By stability [rad/s]; likewise.
-    margin_v_crit1, margin_v_crit2, margin_stability : float
-        Of the use to stick-slip, to what vibrates, and to where sliding is unstable [rad/s];
-        positive where no speed of use does.
+    mapped : DesignMap
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n_temperatures, n_supports, n_fits)
+        ``v_crit1`` and ``v_crit2`` by simulation, and ``v_crit2_stability``, each the last speed of
+        the map at which it sticks, vibrates or slides unstably; 0 if there is none, ``inf`` beyond
+        the map. ``..._high`` is the next speed. Margins of the use to stick-slip, to what vibrates
+        and to unstable sliding are positive where no speed of use does [rad/s].
     """
-
-    temperature: float
-    interference: float
-    support_stiffness: float
-    v_crit1: float
-    v_crit1_high: float
-    v_crit2: float
-    v_crit2_high: float
-    v_crit2_stability: float
-    margin_v_crit1: float
-    margin_v_crit2: float
-    margin_stability: float
-
-
-def critical_points(mapped: DesignMap) -> list[CriticalPoint]:
-    """Return the critical speeds of each temperature, support and fit; none for a swing."""
     if mapped.motion != "steady":
-        return []
+        return {}
     speed = np.array(mapped.grid.speed)
-    sticks = mapped.regime == Regime.STICK_SLIP.value
-    vibrates = mapped.regime != Regime.STEADY_SLIDING.value
-    points = []
-    for at in np.ndindex(mapped.growth.shape[:3]):
-        last, spans = zip(
-            *(safe_range(speed, one[at]) for one in (sticks, vibrates, mapped.growth > 0.0)),
-            strict=True,
-        )
-        points.append(
-            CriticalPoint(
-                mapped.grid.temperature[at[0]], mapped.grid.interference[at[2]],
-                mapped.grid.support_stiffness[at[1]],
-                last[0], spans[0][1], last[1], spans[1][1], last[2],
-                *(margin_of(span, mapped.grid.use) for span in spans),
-            )
-        )  # fmt: skip
-    return points
+    happens = {
+        ("v_crit1", "margin_v_crit1"): mapped.regime == Regime.STICK_SLIP.value,
+        ("v_crit2", "margin_v_crit2"): mapped.regime != Regime.STEADY_SLIDING.value,
+        ("v_crit2_stability", "margin_stability"): mapped.growth > 0.0,
+    }
+    shape = mapped.grid.shape[:3]
+    critical: dict[str, NDArray[np.float64]] = {}
+    for (name, margin), there in happens.items():
+        columns = name, f"{name}_high", margin
+        critical |= {column: np.empty(shape) for column in columns}
+        for at in np.ndindex(shape):
+            last, span = safe_range(speed, there[at])
+            values = last, span[1], margin_of(span, mapped.grid.use)
+            for column, value in zip(columns, values, strict=True):
+                critical[column][at] = value
+    return critical
 
 
 def safe_range(
@@ -152,8 +129,8 @@ class Standing:
     Parameters
     ----------
     mapped : DesignMap
-    critical : tuple of CriticalPoint
-        Critical speeds and margins, by simulation and by stability.
+    critical : dict of str to ndarray, shape (n_temperatures, n_supports, n_fits)
+        Critical speeds and margins of `critical_speeds_of` [rad/s].
     mean_loudness : float
         Of the use [sone].
     shares : dict of str to float
@@ -175,7 +152,7 @@ class Standing:
     """
 
     mapped: DesignMap
-    critical: tuple[CriticalPoint, ...]
+    critical: dict[str, NDArray[np.float64]]
     mean_loudness: float
     shares: dict[str, float]
     loudest: Condition | None
@@ -204,36 +181,17 @@ class Standing:
         Parameters
         ----------
         name : str
-            Of a `CriticalPoint`; of speeds the largest is the worst, of margins the smallest.
+            Of `critical`; of speeds the largest is the worst, of margins the smallest.
 
         Returns
         -------
         float
             [rad/s]; NaN where the shaft swings.
         """
-        choose = min if name.startswith("margin") else max
-        return choose((getattr(one, name) for one in self.critical), default=math.nan)
-
-
-def loudness_weight(level: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return loudness from levels: 1 sone at 40 dB(A), doubled every 10 dB.
-
-    Parameters
-    ----------
-    level : ndarray, any shape
-        [dB(A)]
-
-    Returns
-    -------
-    ndarray
-        Of the same shape [sone].
-
-    Examples
-    --------
-    >>> loudness_weight(np.array([40.0, 60.0]))
-    array([1., 4.])
-    """
-    return np.asarray(2.0 ** ((level - 40.0) / 10.0))
+        if name not in self.critical:
+            return math.nan
+        values = self.critical[name]
+        return float(values.min() if name.startswith("margin") else values.max())
 
 
 def standing_of(mapped: DesignMap) -> Standing:
@@ -254,10 +212,11 @@ def standing_of(mapped: DesignMap) -> Standing:
     noisy = (sound != "none") & np.isfinite(level)
     loudest = np.unravel_index(np.argmax(np.where(noisy, level, -np.inf)), level.shape)
     any_noise = bool(noisy.any())
+    sone = 2.0 ** ((level_max[noisy] - 40.0) / 10.0)
     return Standing(
         mapped=mapped,
-        critical=tuple(critical_points(mapped)),
-        mean_loudness=float(np.sum(loudness_weight(level_max[noisy])) / label.size),
+        critical=critical_speeds_of(mapped),
+        mean_loudness=float(np.sum(sone) / label.size),
         shares={name: float(np.mean(label == name)) for name in SHARED},
         loudest=condition_at(mapped.grid, loudest) if any_noise else None,
         loudest_label=str(sound[loudest]) if any_noise else "none",

@@ -1,4 +1,4 @@
-"""Tables of a screening: map, critical speeds, designs, advice and sensitivities."""
+"""Tables of a screening: map, critical speeds, designs and advice."""
 
 from __future__ import annotations
 
@@ -40,19 +40,21 @@ def screening_tables(screening: Screening) -> dict[str, Table]:
     (('rank', 'design', 'environment'), 0.0)
     """
     points = ((mapped, at) for mapped in screening.maps for at in np.ndindex(mapped.label.shape))
+    places = (
+        (one, one.mapped.grid, at)
+        for one in screening.standings
+        if one.critical
+        for at in np.ndindex(one.mapped.grid.shape[:3])
+    )
     columns, rows = _table(_DESIGNS, ((one,) for one in screening.standings))
     rows += [{"design": name, "error": reason} for name, reason in screening.refused]
+    offers = [(one, offer) for one in screening.standings for offer in one.offers]
     tables = {
         "map.csv": _table(_MAP, points),
-        "critical_speeds.csv": _table(
-            _CRITICAL, ((one, point) for one in screening.standings for point in one.critical)
-        ),
+        "critical_speeds.csv": _table(_CRITICAL, places),
         "designs.csv": (columns, rows),
     }
-    offers = [(one, offer) for one in screening.standings for offer in one.offers]
-    if offers:
-        tables["advice.csv"] = _table(_ADVICE, offers)
-    return tables
+    return tables | ({"advice.csv": _table(_ADVICE, offers)} if offers else {})
 
 
 def _table(columns: Columns, items: Iterable[tuple[Any, ...]]) -> Table:
@@ -103,11 +105,11 @@ _SPEEDS = "v_crit1", "v_crit1_high", "v_crit2", "v_crit2_high", "v_crit2_stabili
 
 _CRITICAL: Columns = {
     **_OF_DESIGN,
-    "temperature_C": lambda _, point: point.temperature,
-    "interference_mm": lambda _, point: _short(1e3 * point.interference),
-    "support_stiffness_Nm_rad": lambda _, point: _support(point.support_stiffness),
+    "temperature_C": lambda _, grid, at: grid.temperature[at[0]],
+    "interference_mm": lambda _, grid, at: _short(1e3 * grid.interference[at[2]]),
+    "support_stiffness_Nm_rad": lambda _, grid, at: _support(grid.support_stiffness[at[1]]),
     **{
-        f"{name}_rad_s": lambda _, point, name=name: _short(getattr(point, name))
+        f"{name}_rad_s": lambda one, _, at, name=name: _short(one.critical[name][at])
         for name in _SPEEDS
     },
 }

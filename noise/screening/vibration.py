@@ -136,8 +136,6 @@ class Course:
     ----------
     lasts : bool
         Whether it is still there, and neither dies nor is about to.
-    seconds : float
-        After which that was certain [s].
     motion : Motion
         The last two seconds.
     solver : MotionSolver
@@ -147,7 +145,6 @@ class Course:
     """
 
     lasts: bool
-    seconds: float
     motion: Motion
     solver: MotionSolver
     speed: float
@@ -162,8 +159,6 @@ class Vibration:
     state : str
         ``none`` where a running vibration dies, ``persists`` where it goes on but none breaks out
         from rest, ``breaks out`` elsewhere.
-    growth : float
-        Of a small vibration about steady sliding [1/s].
     course : Course, optional
         Of the vibration; None where there is none.
     simulated : bool
@@ -171,7 +166,6 @@ class Vibration:
     """
 
     state: str
-    growth: float
     course: Course | None
     simulated: bool = True
 
@@ -257,8 +251,8 @@ def _unstable(rig: Rig, at: Condition, growth: float, start: float | None) -> Vi
     if not course.lasts:  # it grows so slowly that only what runs already shows where it ends
         course = running(rig, at, growth, start)
     if course.lasts:
-        return Vibration(BREAKS_OUT, growth, course)
-    return Vibration("none", growth, None)
+        return Vibration(BREAKS_OUT, course)
+    return Vibration("none", None)
 
 
 def _beside_rest(
@@ -269,10 +263,10 @@ def _beside_rest(
     if lasts or from_rest:
         rested = _followed(_solver(rig, at), at, growth)
         if rested.lasts:
-            return Vibration(BREAKS_OUT, growth, rested)
+            return Vibration(BREAKS_OUT, rested)
     if lasts:
-        return Vibration(PERSISTS, growth, course)
-    return Vibration("none", growth, None)
+        return Vibration(PERSISTS, course)
+    return Vibration("none", None)
 
 
 def _outwards(
@@ -433,8 +427,7 @@ def _followed(
     # Where sliding is unstable it may rise and fall in bursts, seconds apart.
     last_sizes = sizes[-round(_IRREGULAR / BLOCK) :] if growth > 0.0 else sizes[-1:]
     lasts = max(last_sizes) > 1.0 if certain is None else certain
-    motion = parts[0].followed_by(*list(parts)[1:])
-    return Course(lasts, len(sizes) * BLOCK, motion, solver, at.speed)
+    return Course(lasts, parts[0].followed_by(*list(parts)[1:]), solver, at.speed)
 
 
 def _outcome(sizes: NDArray[np.float64], growth: float, patience: float) -> bool | None:

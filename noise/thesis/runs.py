@@ -18,7 +18,6 @@ from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
 from models.bushing import Sleeve
-from models.condition import FIXED
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from models.structure.beams import beam_structure
@@ -91,16 +90,6 @@ class Case:
         """Of the fit [m]."""
         return 1e-3 * self.interference_mm
 
-    @property
-    def fixed(self) -> bool:
-        """True if the clamp is bolted to the baseplate."""
-        return self.support_stiffness == FIXED
-
-    def __str__(self) -> str:
-        support = "fixed clamp" if self.fixed else f"{self.support_stiffness:g} Nm/rad"
-        damped = "" if self.damping is None else f", c_E {self.damping:g}"
-        return f"{self.interference_mm:g} mm, {support}{damped}, {self.speed:g} rad/s"
-
 
 @cache
 def rig_of(material: str) -> Rig:
@@ -126,25 +115,15 @@ def constant_note() -> str:
 
 
 @lru_cache(maxsize=4)
-def motion(material: str, case: Case, seconds: float | None = None, rate: float = RATE) -> Motion:
-    """Simulate a case from rest; another damping is for the thesis's material alone.
-
-    Parameters
-    ----------
-    material : str
-    case : Case
-    seconds : float, optional
-        Length of the run [s]; by default what mean slip rates need.
-    rate : float
-        Of the output [Hz].
-    """
+def motion(material: str, case: Case) -> Motion:
+    """Simulate a case from rest; another damping is for the thesis's material alone."""
     return simulate_motion(
         _damped(material, case),
         ConstantSpeed(case.speed),
         interference=case.interference,
         support_stiffness=case.support_stiffness,
-        seconds=seconds or _SECONDS.get(material, _OTHER_SECONDS),
-        rate=rate,
+        seconds=_SECONDS.get(material, _OTHER_SECONDS),
+        rate=RATE,
     )
 
 

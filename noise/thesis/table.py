@@ -25,20 +25,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
+from typing import Any
 
 from noise.base import packaged_toml
-from noise.thesis.runs import (
-    CALIBRATED,
-    LISTED,
-    QUANTITIES,
-    THESIS,
-    Case,
-    constant_note,
-)
+from noise.base.progress import counted
+from noise.thesis.runs import CALIBRATED, LISTED, QUANTITIES, THESIS, Case, constant_note
 
-COLUMNS = (
-    "item", "condition", "unit", "published", "listing", "exact", "calibrated", "verdict",
-)  # fmt: skip
+_MODELS = "listing", "exact", "calibrated"
+
+COLUMNS = "item", "condition", "unit", "published", *_MODELS, "verdict"
 
 _OFF_AT_MOST = 0.25
 """A value that is further off fails."""
@@ -192,7 +187,7 @@ class Row:
 
     def cells(self) -> dict[str, str]:
         """Return the row as texts by column; a value that there is none of is empty."""
-        computed = map(self._shown, (self.listing, self.exact, self.calibrated))
+        computed = (self._shown(getattr(self, name)) for name in _MODELS)
         cells = (self.item, self.condition, self.unit, self.published.text, *computed, self.verdict)
         return dict(zip(COLUMNS, cells, strict=True))
 
@@ -279,26 +274,27 @@ def thesis_rows(groups: Iterable[str]) -> list[Row]:
     return [_row(line) for group in groups for line in _lines()[group]]
 
 
-def _row(line: Mapping[str, str]) -> Row:
-    def value(name: str) -> float | None:
-        return float(line[name]) if line[name] else None
+_OPTIONAL: Mapping[str, Callable[[str], object]] = {
+    "judged": str, "tolerance": float, "measured": bool, "as_printed": float, "scale": float,
+    "meant": lambda text: number(float(text)), "in_sample": bool, "counted": lambda _: False,
+    "limit": float, "digits": int,
+}  # fmt: skip
+"""Fields of a row that a line may state."""
 
+
+def _row(line: Mapping[str, str]) -> Row:
+    optional: dict[str, Any] = {
+        name: of(line[name]) for name, of in _OPTIONAL.items() if line[name]
+    }
     return Row(
-        line["item"], line["condition"], line["unit"],
+        line["item"],
+        line["condition"],
+        line["unit"],
         Published(line["published"], float(line["low"]), float(line["high"])),
-        **_computed(line),
-        judged=line["judged"] or "exact",
-        tolerance=float(line["tolerance"] or 0.01),
-        measured=bool(line["measured"]),
-        meant=number(float(line["meant"])) if line["meant"] else None,
-        as_printed=value("as_printed"),
-        scale=value("scale"),
-        in_sample=bool(line["in_sample"]),
-        counted=not line["counted"],
         why=reasons().get((line["item"], line["condition"]), ""),
-        limit=value("limit"),
-        digits=int(line["digits"] or 4),
-    )  # fmt: skip
+        **_computed(line),
+        **optional,
+    )
 
 
 def _computed(line: Mapping[str, str]) -> dict[str, float]:
@@ -350,18 +346,11 @@ def verdict_counts(rows: Sequence[Row]) -> dict[str, int]:
     {'misprint': 5}
     """
     words = Counter(
-        _counted(part) + (" (in sample)" if row.in_sample else "")
+        part.partition(" by ")[0] + " (in sample)" * row.in_sample
         for row in rows
         for part in row.verdict.removesuffix(" (in sample)").split("; ")
     )
     return dict(words.most_common())
-
-
-def _counted(part: str) -> str:
-    plain = part.removeprefix("calibrated ")
-    if not plain.startswith("off by"):
-        return part
-    return "off" if plain == part else "calibrated off"
 
 
 def measured_counts(rows: Sequence[Row]) -> str:
@@ -378,10 +367,10 @@ def measured_counts(rows: Sequence[Row]) -> str:
     checked = [row for row in facts if not math.isnan(row.best)]
     missed = [row for row in checked if row.misses]
     one, other = (sum(not row.in_sample for row in of) for of in (checked, missed))
-    plural = "" if len(checked) == 1 else "s"
     return (
-        f"Measured: {len(checked)} fact{plural}, of which {one} out of sample; more than 25 % off "
-        f"{len(missed)}, of which {other} out of sample; not checkable {len(facts) - len(checked)}."
+        f"Measured: {counted(len(checked), 'fact')}, of which {one} out of sample; more than 25 % "
+        f"off {len(missed)}, of which {other} out of sample; not checkable "
+        f"{len(facts) - len(checked)}."
     )
 
 

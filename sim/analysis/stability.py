@@ -24,7 +24,6 @@ Compliance of the shaft and memory of the elastomer are ignored.
 # ruff: noqa: ANN001
 
 import math
-from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -112,60 +111,14 @@ def sliding_growth(
         np.ascontiguousarray(np.broadcast_to(np.asarray(x, dtype=np.float64), shape).ravel())
         for x in (speed, interference, support_stiffness)
     )
-    return _growth(rig, packed_systems(rig, fit, support), np.abs(v)).reshape(shape)
-
-
-def growth_of_parts(
-    parts: Sequence[tuple[Rig, float, float]], speed: ArrayLike
-) -> NDArray[np.float64]:
-    """Return the growth rate of a small vibration in many rigs, batched by friction law.
-
-    Parameters
-    ----------
-    parts : sequence of (Rig, float, float)
-        Rig, interference [m] and support stiffness [Nm/rad].
-    speed : array_like, shape (n_speeds,)
-        [rad/s]
-
-    Returns
-    -------
-    ndarray, shape (n_parts, n_speeds)
-        [1/s]
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> rig = load_material_rig("fluorocarbon")
-    >>> damped = rig.changed(damping="x3")
-    >>> growth = growth_of_parts([(rig, 3e-4, 2214.0), (damped, 3e-4, 2214.0)], [5.0, 9.0])
-    >>> bool((growth[0] > growth[1]).all())
-    True
-    """
-    v = np.abs(np.asarray(speed, dtype=np.float64))
-    rates = np.empty((len(parts), v.size))
-    alike: dict[str, list[int]] = {}
-    for i, (rig, _, _) in enumerate(parts):
-        alike.setdefault(repr((rig.friction, rig.effects)), []).append(i)
-    for of_law in alike.values():
-        systems = [
-            packed_systems(rig, np.full(1, fit), np.full(1, support))
-            for rig, fit, support in (parts[i] for i in of_law)
-        ]
-        repeated = np.repeat(np.concatenate(systems), v.size, axis=0)
-        growth = _growth(parts[of_law[0]][0], repeated, np.tile(v, len(of_law)))
-        rates[of_law] = growth.reshape(len(of_law), v.size)
-    return rates
-
-
-def _growth(rig: Rig, systems: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the growth rates of systems at speeds `v` [rad/s], with a rig's law and effects."""
+    v, systems = np.abs(v), packed_systems(rig, fit, support)
     law = friction_law(rig.friction.name)
     values = resolve(f"friction law {law.name!r}", law.parameters, rig.friction.parameters)
     acting = activated(constant_version(rig).effects, EFFECTS)
     contacts = _contacts(contact_hooks(acting, np.random.default_rng(0)), systems, v)
     matrices = _linearised(law, law.coefficients(values), systems, v, contacts)
     eigenvalues = np.linalg.eigvals(matrices) if v.size else np.zeros((0, 1), dtype=complex)
-    return np.asarray(eigenvalues.real.max(axis=1))
+    return np.asarray(eigenvalues.real.max(axis=1).reshape(shape))
 
 
 def _contacts(

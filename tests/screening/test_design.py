@@ -67,7 +67,7 @@ def test_a_design_file_says_rig_use_and_tolerances(tmp_path):
         (('"1..5/5"', "[0.0]"), "values must be above 0"),
         (('"1..5/5"', "true"), "give numbers"),
         (('[2214, "fixed"]', '["soft"]'), "expected numbers"),
-        (("[0.25, 0.3]", "[0.25, 12]"), "must be below 10"),
+        (("[0.25, 0.3]", "[0.25, 12]"), "must be at most 10"),
         (("[-10, 23]", "[-300]"), "above -273.15"),
         (("amplitude_deg = 15, ", ""), "amplitude_deg is missing"),
         (("elastomer_stiffness = 0.05", "stiffness = 0.05"), "unknown key 'stiffness'"),

@@ -11,7 +11,6 @@ from models.rig import Fit
 from models.rig_file import load_material_rig
 from noise.screening.design import Design, Swinging, Use
 from noise.screening.grid import shared_grid
-from noise.screening.mapping import known_rows
 from noise.screening.screen import screen
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
@@ -120,13 +119,10 @@ def test_a_design_of_one_damping_meets_the_supports_of_the_others(quick):
     assert f"   note: {of_fits}" in summary_lines(found)
 
 
-def test_a_fit_that_is_held_makes_the_same_noise_and_is_not_simulated_twice():
+def test_a_fit_that_is_held_makes_the_same_noise():
     fits = (0.1e-3, 0.178e-3, 0.5e-3, 0.6e-3)
     use = Use(speed=(2.0, 8.0), interference=fits, support_stiffness=(2214.0,))
     (found,) = quick_screen(["fluorocarbon"], use).maps
-    assert known_rows(FLUOROCARBON, fits).tolist() == [1, 1, 2, 2]
-    assert found.count("simulated") == 4
-    assert (found.how[0, 0, (0, 3)] == "unchanged").all()
     for row, interference in enumerate(fits):
         one = evaluate_point(FLUOROCARBON, Condition(2.0, interference, 2214.0))
         assert one.label == found.label[0, 0, row, 0]
