@@ -28,21 +28,15 @@ from scipy.signal import butter, firwin, resample_poly, sosfilt, sosfilt_zi, upf
 
 from models.sensors import Sensor, Sensors
 
-CONVERTER_GAIN = {
-    "torque": 82.0,
-    "acceleration": 781.4,
-    "pressure": 23.088,
-    "angle": 9.9,
-}
-"""Gain of each transducer in units per volt (Appendices B to E)."""
-
-_CONVERTER_RANGE = 1.25
-"""Largest voltage of the converter, either sign [V]."""
-
 THESIS_CONVERTER = Sensors(
     {
-        kind: Sensor(full_scale=_CONVERTER_RANGE * gain, bits=12)
-        for kind, gain in CONVERTER_GAIN.items()
+        kind: Sensor(full_scale=1.25 * gain, bits=12)  # 12 bits over +-1.25 V
+        for kind, gain in (
+            ("torque", 82.0),
+            ("acceleration", 781.4),
+            ("pressure", 23.088),
+            ("angle", 9.9),
+        )
     }
 )
 """Converter board of the thesis (3.1.2)."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from models.condition import Condition
 from models.errors import ParameterError
@@ -111,15 +111,8 @@ class Plan:
         Rate of motion and sound [Hz].
     n_settling, n_recorded : int
         Samples at that rate before the recording starts, and in it.
-    temperature : float, optional
-        Ambient temperature [degree Celsius], for the recording's condition.
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> plan = Plan(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0, (), 90e3, 0, 9)
-    >>> plan.condition.speed, plan.condition.material
-    (5.0, 'PDMS')
+    condition : Condition, optional
+        Condition of the recording; without a speed where it varies.
     """
 
     rig: Rig
@@ -130,22 +123,7 @@ class Plan:
     rate: float
     n_settling: int
     n_recorded: int
-    temperature: float | None = None
-
-    @property
-    def condition(self) -> Condition:
-        """Operating condition of the run; without a speed where it varies."""
-        return _condition(self)
-
-
-def _condition(at: "Setting | Plan") -> Condition:
-    return Condition(
-        speed=at.shaft.value if isinstance(at.shaft, ConstantSpeed) else None,
-        interference=at.interference,
-        support_stiffness=at.support_stiffness,
-        material=at.rig.material,
-        temperature=at.temperature,
-    )
+    condition: Condition = field(default_factory=Condition)
 
 
 def plan_run(
@@ -181,29 +159,21 @@ def plan_run(
     >>> from models.rig_file import load_material_rig
     >>> setting = Setting(load_material_rig("PDMS"), ConstantSpeed(5.0), 0.279e-3, 2214.0)
     >>> plan = plan_run(setting, seconds=1.0, rate=30e3)
-    >>> plan.rate, plan.n_settling, plan.n_recorded
-    (90000.0, 45000, 90000)
+    >>> plan.rate, plan.n_settling, plan.n_recorded, plan.condition.speed
+    (90000.0, 45000, 90000, 5.0)
     """
-    shaft, temperature = setting.shaft, setting.temperature
+    shaft = setting.shaft
+    constant = isinstance(shaft, ConstantSpeed)
     if settling is None:
-        settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
-    refuse_impossible(_condition(setting), "condition")
-    _check(seconds, settling, rate)
-    rig = at_temperature(setting.rig, temperature)
-    return Plan(
-        rig=rig,
-        shaft=shaft,
+        settling = SIMULATION.settling if constant else 0.0
+    condition = Condition(
+        speed=shaft.value if constant else None,
         interference=setting.interference,
         support_stiffness=setting.support_stiffness,
-        effects=activated(rig.effects, library or EFFECTS),
-        rate=SIMULATION.rate(rate),
-        n_settling=round(settling * SIMULATION.rate(rate)),
-        n_recorded=round(seconds * rate) * SIMULATION.decimation(rate),
-        temperature=temperature,
+        material=setting.rig.material,
+        temperature=setting.temperature,
     )
-
-
-def _check(seconds: float, settling: float, rate: float) -> None:
+    refuse_impossible(condition, "condition")
     if not (0.0 < seconds <= LONGEST_RUN and 0.0 <= settling <= LONGEST_RUN):
         raise ParameterError(
             f"seconds = {seconds:g} must be above 0, settling = {settling:g} at least 0, both at "
@@ -213,3 +183,15 @@ def _check(seconds: float, settling: float, rate: float) -> None:
         raise ParameterError(f"rate = {rate:g} Hz must lie between 1000 and 400000")
     if round(seconds * rate) < 2:
         raise ParameterError(f"seconds = {seconds:g} holds no two samples at {rate:g} Hz")
+    rig = at_temperature(setting.rig, setting.temperature)
+    return Plan(
+        rig=rig,
+        shaft=shaft,
+        interference=setting.interference,
+        support_stiffness=setting.support_stiffness,
+        effects=activated(rig.effects, library or EFFECTS),
+        rate=SIMULATION.rate(rate),
+        n_settling=round(settling * SIMULATION.rate(rate)),
+        n_recorded=round(seconds * rate) * SIMULATION.decimation(rate),
+        condition=condition,
+    )

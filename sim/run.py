@@ -6,7 +6,6 @@ that need only some stages call those. `sim.live` sends a rig whose setting chan
 solver and effects block by block.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -16,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.drawing import BLUE, ORANGE, axes_or_new, thinned
-from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses, radiate
 from models.radiation.rig_response import impulse_responses
 from models.recording import Channel, Recording
@@ -205,26 +203,17 @@ class Run:
     pulse_pressure: NDArray[np.float64]
     settling: float
 
-    def plot(
-        self, ax: "Axes | None" = None, *, start: float | None = None, end: float | None = None
-    ) -> "Axes":
-        """Plot the torques in contact and elastomer over time.
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Plot the torques in contact and elastomer over the last tenth of a second.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
             Axes to draw into; by default a new figure.
-        start, end : float, optional
-            Time range [s]; by default the last tenth of a second.
 
         Returns
         -------
         matplotlib.axes.Axes
-
-        Raises
-        ------
-        ParameterError
-            The run has no samples between them.
 
         Examples
         --------
@@ -235,14 +224,7 @@ class Run:
         'PDMS, 0.279 mm, 2214 Nm/rad, 5 rad/s'
         """
         motion = self.motion
-        duration = motion.torque.size / motion.rate
-        end = duration if end is None else end
-        start = max(0.0, end - _SHOWN) if start is None else start
-        part = slice(math.ceil(max(0.0, start) * motion.rate), round(end * motion.rate))
-        if not motion.torque[part].size:
-            raise ParameterError(
-                f"start = {start:g} s and end = {end:g} s hold nothing of a run of {duration:g} s"
-            )
+        part = slice(max(0, motion.torque.size - round(_SHOWN * motion.rate)), None)
         time = np.arange(motion.torque.size)[part] / motion.rate
         with axes_or_new(ax) as axes:
             for values, colour, label, width in torque_curves(motion, part):

@@ -17,7 +17,7 @@ where the properties of the nearest fit are held so is the row of that fit.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -44,8 +44,8 @@ LABELS = ("none", "creak", "squawk", "squeal")
 """Of a point, in the order of their codes."""
 
 SIMULATED, REFINED, BEYOND = ("simulated", "refined", "beyond")
-"""Origin of a point: simulated; as the simulated points around it; skipped, since a running
-vibration dies at a speed between it and unstable sliding."""
+"""Origin of a point: simulated; as the simulated points around it, or at another temperature or fit
+that changes nothing; skipped, since a running vibration dies between it and unstable sliding."""
 
 STRIDE = 8
 """Points from corner to corner of the coarse cells."""
@@ -191,7 +191,13 @@ def map_design(
     sound = np.array(LABELS)[kind % len(LABELS)]
     physics = on_grid(interpolated(values[0], refined, nearest=1)).astype(int)
     level, level_max = (on_grid(interpolated(one, refined)) for one in values[1:])
-    beyond, simulated = on_grid(refined.beyond | ~ran), on_grid(refined.simulated)
+    # Of temperatures and fits with the same results the nearest to that which was simulated counts.
+    own = np.zeros((grid.shape[0], grid.shape[2]), dtype=bool)
+    own[
+        np.ix_(_nearest(grid.temperature, temperature), _nearest(grid.interference, interference))
+    ] = True
+    beyond = on_grid(refined.beyond | ~ran)
+    simulated = on_grid(refined.simulated) & own[:, None, :, None]
     return DesignMap(
         design=design,
         environment=environment,
@@ -207,6 +213,11 @@ def map_design(
         growth=on_grid(growth),
         open=refined.open,
     )
+
+
+def _nearest(axis: Sequence[float], values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the index on an axis of the nearest to each value."""
+    return np.abs(np.array(axis)[:, None] - values).argmin(axis=0)
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:

@@ -1,18 +1,17 @@
-"""Runs of the three models at a condition, reduced to the numbers that the thesis reports.
+"""Runs of two models at a condition, reduced to the numbers that the thesis reports.
 
-Slips and stick-slip are those that the torque shows, of all three models (`sim.analysis.regime`):
-the calibrated contact never sticks truly, and of true stick the count is that of its ends.
+Slips and stick-slip are those that the torque shows, of both models (`sim.analysis.regime`): the
+calibrated contact never sticks truly, and of true stick the count is that of its ends.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import Lines, find_lines
@@ -21,16 +20,13 @@ from models.bushing import Sleeve
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from models.structure.beams import beam_structure
-from noise.thesis.listing import STEP, ListingRun, run_listing
 from sim.analysis.critical_speeds import (
-    SPEEDS,
     CriticalSpeeds,
     critical_damping,
     critical_speeds,
-    largest_sticking,
     with_damping,
 )
-from sim.analysis.regime import LEAST_OSCILLATION, LEAST_SUDDEN, Slips, find_slips, motion_slips
+from sim.analysis.regime import LEAST_OSCILLATION, motion_slips
 from sim.bushing import lumped_bushing
 from sim.effects import constant_version, irregular_effects
 from sim.motion import Motion, simulate_motion
@@ -200,13 +196,9 @@ def _recorded(measure: Callable[[Run], float]) -> Quantity:
 def _first_peak_speed(material: str, case: Case) -> float:
     """Return the largest sliding speed of the first slip (Figure 6.7) [rad/s]."""
     run = motion(material, case)
-    return _first_peak(run.stuck, run.sliding_speed)
-
-
-def _first_peak(stuck: NDArray[np.bool_], sliding: NDArray[np.float64]) -> float:
-    start = int(stuck.argmin())
-    length = int(stuck[start:].argmax()) or sliding.size
-    return float(sliding[start : start + length].max())
+    start = int(run.stuck.argmin())
+    length = int(run.stuck[start:].argmax()) or run.stuck.size
+    return float(run.sliding_speed[start : start + length].max())
 
 
 @cache
@@ -289,83 +281,3 @@ QUANTITIES: dict[str, Quantity] = {
     "v_crit2": lambda material, case: _speeds(material, case).v_crit2,
 }
 """Numbers of a material at a case, by the name that ``rows.csv`` gives them."""
-
-
-# --- the same of the thesis's listing ------------------------------------------------------------
-
-
-def _listing_run(case: Case, seconds: float = _SECONDS[THESIS]) -> ListingRun:
-    """Run the thesis's listing, which cannot compute a fixed clamp."""
-    fit = rig_of(THESIS).fit(case.interference)
-    damping = fit.damping[case.support_stiffness] if case.damping is None else case.damping
-    return run_listing(
-        case.speed,
-        support_stiffness=case.support_stiffness,
-        damping=damping,
-        elastomer_stiffness=fit.elastomer_stiffness,
-        critical_torque=fit.critical_torque,
-        kinetic_torque=fit.kinetic_torque,
-        seconds=seconds,
-    )
-
-
-def _listing_slips(case: Case, settled: float, seconds: float = _SECONDS[THESIS]) -> Slips | None:
-    """Return the listing's slips after a share of its run; None where the torque is steady."""
-    torque = _listing_run(case, seconds).torque
-    torque = torque[round(settled * torque.size) :]
-    if torque.std() <= LEAST_OSCILLATION * abs(torque.mean()):
-        return None
-    rig = rig_of(THESIS)
-    stiffness = rig.fit(case.interference).elastomer_stiffness
-    return find_slips(
-        torque / stiffness, case.speed, 1.0 / STEP,
-        own_period=2.0 * math.pi * math.sqrt(rig.elastomer_inertia / stiffness),
-    )  # fmt: skip
-
-
-def _listing_sudden_share(case: Case, seconds: float = _SECONDS[THESIS]) -> float:
-    slips = _listing_slips(case, 0.5, seconds)
-    return slips.sudden_share if slips else 0.0
-
-
-def _listing_sticks(case: Case) -> bool:
-    return _listing_sudden_share(case, _SEARCHED) > LEAST_SUDDEN
-
-
-def _listing_slip_frequency(case: Case) -> float:
-    slips = _listing_slips(case, 0.25)
-    return slips.rate if slips else math.nan
-
-
-def _listing_first_peak(case: Case) -> float:
-    run = _listing_run(case)
-    return _first_peak(run.stuck, -run.relative_speed)
-
-
-@cache
-def _listing_damping(case: Case) -> float:
-    # Below any damping that matters; the listing takes none of zero.
-    return largest_sticking(
-        lambda damping: _listing_sticks(replace(case, damping=max(damping, 1e-9))),
-        _HIGHEST_DAMPING,
-        _DAMPING_TOLERANCE,
-    )
-
-
-@cache
-def _listing_v_crit1(case: Case) -> float:
-    """Return the last speed at which the listing sticks and slips [rad/s]."""
-    sticking = [speed for speed in SPEEDS if _listing_sticks(replace(case, speed=speed))]
-    last = max(sticking, default=0.0)
-    return math.inf if last == SPEEDS[-1] else last
-
-
-LISTED: dict[str, Callable[[Case], float]] = {
-    "critical_damping": _listing_damping,
-    "first_peak_speed": _listing_first_peak,
-    "peak_speed": lambda case: float(-_listing_run(case).relative_speed.min()),
-    "slip_frequency": _listing_slip_frequency,
-    "sudden_share": _listing_sudden_share,
-    "v_crit1": _listing_v_crit1,
-}
-"""Numbers of `QUANTITIES` that the listing gives; it knows no fixed clamp."""

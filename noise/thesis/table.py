@@ -4,6 +4,7 @@ Each row of ``rows.csv`` is a published number with all that its verdict depends
 it is computed. ``value`` is the number itself: arithmetic on numbers of the thesis alone (its
 calibrations, its shaft, its beams between rigid anchors, its heat) was done once and is data;
 ``as_printed`` is what a formula gives as it is printed, where ``value`` has it put right.
+``listing`` is what the thesis's own program gives, which was run once (`tests/studies.md`).
 ``quantity`` names one of `noise.thesis.runs.QUANTITIES`, computed at ``cases`` for the models in
 ``columns`` (by default the equations and the calibrated material). A case is speed, interference
 and support stiffness, then c_E or a material where they are others; cases are parted by semicolons,
@@ -29,7 +30,7 @@ from typing import Any
 
 from noise.base import packaged_toml
 from noise.base.progress import counted
-from noise.thesis.runs import CALIBRATED, LISTED, QUANTITIES, THESIS, Case, constant_note
+from noise.thesis.runs import CALIBRATED, QUANTITIES, THESIS, Case, constant_note
 
 _MODELS = "listing", "exact", "calibrated"
 
@@ -300,17 +301,14 @@ def _row(line: Mapping[str, str]) -> Row:
 def _computed(line: Mapping[str, str]) -> dict[str, float]:
     """Return the values of a row by column."""
     quantity = line["quantity"]
-    results: dict[str, float] = {}
+    results = {"listing": float(line["listing"])} if line["listing"] else {}
     if line["value"]:
         results[line["judged"] or "exact"] = float(line["value"])
     columns = (line["columns"] or "exact calibrated").split() if quantity else []
     for column in columns:
         cases = map(_case, line["cases"].split(";"))
-        if column == "listing":
-            values = [LISTED[quantity](case) for case, _ in cases]
-        else:
-            shipped = THESIS if column == "exact" else CALIBRATED
-            values = [QUANTITIES[quantity](own or shipped, case) for case, own in cases]
+        shipped = THESIS if column == "exact" else CALIBRATED
+        values = [QUANTITIES[quantity](own or shipped, case) for case, own in cases]
         value = _COMBINED[line["combined"]](values)
         results[column] = value if math.isinf(value) else round(value, _DECIMALS)
     return results

@@ -15,7 +15,7 @@ stick-slip again at an unlucky phase of the clamp. So the search comes from abov
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -94,7 +94,8 @@ def critical_speeds(
     >>> critical_speeds(rig, 0.279e-3, 3745.0, (5.0, 6.0, 6.75, 7.5))
     CriticalSpeeds(v_crit1=6.75, v_crit2=6.75)
     """
-    _check(speeds)
+    if not (speeds and speeds[0] > 0.0 and all(a < b for a, b in pairwise(speeds))):
+        raise ParameterError("critical speeds: the speeds to try must rise from above 0 rad/s")
     v_crit2 = 0.0
     for speed in reversed(speeds):
         motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=seconds)
@@ -149,12 +150,6 @@ def motion_from_rest(
         seconds=seconds,
         rate=REGIME_RATE,
     )
-
-
-def _check(speeds: Sequence[float]) -> None:
-    rising = all(a < b for a, b in pairwise(speeds))
-    if not (speeds and speeds[0] > 0.0 and rising):
-        raise ParameterError("critical speeds: the speeds to try must rise from above 0 rad/s")
 
 
 def with_damping(rig: Rig, damping: float) -> Rig:
@@ -229,34 +224,6 @@ def critical_damping(
         )
         return friction_regime(motion) is Regime.STICK_SLIP
 
-    return largest_sticking(sticks, highest, tolerance)
-
-
-def largest_sticking(sticks: Callable[[float], bool], highest: float, tolerance: float) -> float:
-    """Find the largest damping at which `sticks` is true, by steps from above and bisection.
-
-    Parameters
-    ----------
-    sticks : callable
-        Function of a damping [Nm s/rad].
-    highest, tolerance : float
-        [Nm s/rad]
-
-    Returns
-    -------
-    float
-        [Nm s/rad]; 0 if `sticks` is nowhere true, ``inf`` if it is at `highest`.
-
-    Raises
-    ------
-    ParameterError
-        If limits are not positive.
-
-    Examples
-    --------
-    >>> round(largest_sticking(lambda c: c < 0.0777 or 0.1 < c < 0.123, 0.3, 1e-5), 4)
-    0.123
-    """
     if not (highest > 0.0 and tolerance > 0.0):
         raise ParameterError(
             f"critical damping: highest = {highest:g} and tolerance = {tolerance:g} must be "

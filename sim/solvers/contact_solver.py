@@ -325,8 +325,6 @@ class ContactRun:
         Name of the friction in error messages.
     tolerance : float
         Error of a step [-]; `sim.friction.law.FrictionLaw.tolerance` with a law.
-    refined : float
-        Factor by which steps are shortened, to estimate their error.
     motion : ndarray, shape (4,), optional
         theta1 [rad], theta1' [rad/s], theta2, theta2' to start from in the middle of a slip; by
         default the run starts from rest.
@@ -354,7 +352,6 @@ class ContactRun:
         hooks: tuple[Hook, ...] = (),
         name: str = "friction",
         tolerance: float = _TOLERANCE,
-        refined: float = 1.0,
         motion: NDArray[np.float64] | None = None,
     ) -> None:
         # Imported here, so that the kernel is not compiled for runs that do not need it.
@@ -368,8 +365,7 @@ class ContactRun:
             hooks_record(hooks, self._rows, law_state.size),
         )
         self._loop: Any = run_contact
-        # The error of a step is proportional to the fifth power of its length.
-        self._limits = Limits(LONGEST_STEP / refined, tolerance / refined**5)
+        self._limits = Limits(LONGEST_STEP, tolerance)
         self._step, self._name = step, name
         self._parts = _parts(law, law_state.size, hooks)
         self._carried = np.zeros(N_CARRIED)

@@ -113,17 +113,13 @@ def test_a_design_with_tolerances_tells_what_its_parts_do(tmp_path, capsys, few)
     assert main(["screen", str(given), "PDMS", "--speed", "7,9", "--out", str(out), *MUTE]) == 0
     told = {row["design"]: row for row in rows(out / "designs.csv")}
     assert told["PDMS"]["p_noisy_part"] == ""
+    without = ["--speed", "7", "--no-tolerances", "--out", str(tmp_path / "without"), *MUTE]
+    assert main(["screen", str(given), *without]) == 0
+    assert rows(tmp_path / "without" / "designs.csv")[0]["p_noisy_part"] == ""
     mine = told["mine"]
     low, value, high = (float(mine[f"p_noisy_part{end}"]) for end in ("_low", "", "_high"))
     assert low <= value <= high
     assert "how sure: " in capsys.readouterr().out
-
-
-def test_tolerances_can_be_left_out(tmp_path, few):
-    given = tmp_path / "given.toml"
-    given.write_text(STATED, encoding="utf-8")
-    assert main(["screen", str(given), *QUICK, "--no-tolerances", "--out", str(tmp_path)]) == 0
-    assert rows(tmp_path / "designs.csv")[0]["p_noisy_part"] == ""
 
 
 def test_what_fails_is_told_and_loses_nothing_else(tmp_path, capsys, monkeypatch):

@@ -9,11 +9,10 @@ import pytest
 from models.errors import ParameterError
 from models.rig_file import load_material_rig
 from noise.noise_definition import LEAST_LEVEL
-from noise.screening.design import Design, Swinging, Use
+from noise.screening.design import Design, Use
 from noise.screening.grid import shared_grid
 from noise.screening.mapping import map_design
 from noise.screening.point import batch_evaluator
-from noise.screening.tables import screening_tables
 from noise.screening.vibration import Condition
 from tests.helpers.quick_screens import evaluate_point, quick_screen
 from tests.screening.long_runs import label_after
@@ -136,18 +135,6 @@ def test_a_bar_that_swings_on_the_road_makes_noise_where_its_rubber_does():
     assert math.isnan(still.level)
 
 
-def test_a_swing_is_mapped_over_its_frequencies_beside_constant_speed():
-    swinging = Swinging(math.radians(15), (1.0, 2.0, 3.0))
-    alone = quick_screen(["PDMS"], Use(swinging=swinging, support_stiffness=(2214.0,)))
-    assert [found.motion for found in alone.maps] == ["swinging"]
-    assert alone.maps[0].grid.speed == swinging.peak_speed
-    assert alone.standings[0].critical == {}
-    both = quick_screen(
-        ["PDMS"], Use(speed=(1.0, 2.0), swinging=swinging, support_stiffness=(2214.0,))
-    )
-    assert [found.motion for found in both.maps] == ["steady", "swinging"]
-
-
 def test_the_design_that_is_quieter_by_construction_is_ranked_first():
     # Damping that sliding's fall of torque cannot feed: three times that of the elastomer.
     fits = tuple(
@@ -164,16 +151,6 @@ def test_the_design_that_is_quieter_by_construction_is_ranked_first():
     )
 
 
-@pytest.mark.slow
-def test_environments_change_a_map_and_are_told_apart():
-    use = Use(speed=(3.0, 6.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = quick_screen(["fluorocarbon"], use, environments=["dry", "grease", "wet"])
-    assert [one.environment for one in found.maps] == ["dry", "grease", "wet"]
-    assert (found.maps[1].label == "none").all()
-    growth = [one.growth.mean() for one in found.maps]
-    assert growth[1] < growth[0] < growth[2]
-
-
 def test_a_design_that_cannot_be_simulated_does_not_stop_the_others():
     fast = replace(FLUOROCARBON, elastomer_inertia=1e-14)
     use = Use(speed=(1.0, 2.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
@@ -182,25 +159,3 @@ def test_a_design_that_cannot_be_simulated_does_not_stop_the_others():
     assert [one.design for one in found.maps] == ["PDMS"]
     with pytest.raises(ParameterError, match="grows without bound"):
         quick_screen([Design("fast", fast)], use)
-
-
-HELD = Design("held", load_material_rig("fluorocarbon-thesis").changed(critical_torque="x1000"))
-
-
-def test_a_contact_that_never_slips_is_refused():
-    use = Use(speed=(1.0, 9.0), interference=(0.279e-3,), support_stiffness=(2214.0,))
-    found = quick_screen([HELD, "PDMS"], use)
-    assert [(one.design, one.rank) for one in found.standings] == [("PDMS", 1)]
-    _, rows = screening_tables(found)["designs.csv"]
-    assert rows[-1]["error"].startswith("never slips: the contact holds 10700 Nm")
-
-
-def test_in_a_swing_it_is_a_result():
-    swing = Use(
-        swinging=Swinging(math.radians(10.0), (1.0,)),
-        interference=(0.279e-3,),
-        support_stiffness=(2214.0,),
-    )
-    best, other = quick_screen(["fluorocarbon-thesis", HELD], swing).standings
-    assert (best.design, best.rank, other.rank) == ("held", 1, 2)
-    assert best.shares["none"] == 1.0

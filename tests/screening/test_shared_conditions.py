@@ -3,14 +3,12 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
 from models.rig import Fit
 from models.rig_file import load_material_rig
 from noise.screening.design import Design, Swinging, Use
-from noise.screening.grid import shared_grid
 from noise.screening.screen import screen
 from noise.screening.summary import summary_lines
 from noise.screening.tables import screening_tables
@@ -89,19 +87,6 @@ def test_all_ranked_designs_have_the_same_points(quick, designs, asked, environm
     assert all(own == first for own in points.values())
     assert len(set(first)) == len(first)
     assert {one.design for one in found.standings} == set(points)
-
-
-@given(designs=st.lists(bushings(), min_size=2, max_size=3), asked=st.none() | USE)
-def test_what_one_was_asked_all_are(designs, asked):
-    grid = shared_grid(designs, asked)
-    for design in designs:
-        own = shared_grid([design], asked)
-        for name in ("interference", "support_stiffness"):
-            values = np.array(getattr(grid, name))
-            for value in getattr(own, name):
-                assert np.isclose(values, value, rtol=1e-6, atol=0.0).any()
-    for axis_values in (grid.speed, grid.interference, grid.support_stiffness, grid.temperature):
-        assert list(axis_values) == sorted(set(axis_values))
 
 
 SINGLE = Design(

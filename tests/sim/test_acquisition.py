@@ -12,7 +12,6 @@ from sim.acquisition import (
     Acquisition,
     decimate_sensed,
     digitise,
-    sample,
 )  # fmt: skip
 from sim.run import simulate
 
@@ -51,15 +50,6 @@ def test_the_filter_takes_3_db_at_its_corner_and_48_an_octave_above(
     tone = np.sin(2.0 * np.pi * relative * corner / rate * np.arange(40_000))
     passed = decimate_sensed(tone, 1, rate, Sensor(antialias=corner))[4000:]
     assert 20.0 * np.log10(np.sqrt(2.0) * passed.std()) == pytest.approx(gain_db, abs=within)
-
-
-def test_the_filter_acts_before_the_noise_and_the_converter_after_it():
-    sensor = Sensor(noise=0.3, full_scale=2.0, bits=6, antialias=1e3)
-    through = Acquisition(sensors=Sensors({"torque": sensor}))
-    read = sample({"torque": np.zeros(90_000)}, 3, through, rng())["torque"]
-    power = np.abs(np.fft.rfft(read)) ** 2
-    assert read.std() == pytest.approx(np.hypot(0.3, sensor.step / np.sqrt(12.0)), rel=0.02)
-    assert power[: power.size // 10].mean() == pytest.approx(power.mean(), rel=0.1)
 
 
 def test_a_rig_records_through_its_sensors():

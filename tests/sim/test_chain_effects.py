@@ -113,15 +113,3 @@ def test_a_lonely_resonance_adds_6_db_where_it_is_and_nothing_far_away(plain):
     for path in ("torque_to_pressure", "pulse_to_pressure"):
         gain = 20 * np.log10(np.abs(getattr(after, path) / getattr(before, path)))
         assert gain == pytest.approx([0.0, 6.02, 0.0], abs=0.02)
-
-
-@pytest.mark.parametrize("form", ["even", "scattered"])
-def test_many_resonances_lie_as_dense_as_they_are_told(plain, form):
-    flat = replace(plain, torque_to_pressure=np.ones(1), pulse_to_pressure=np.ones(1))
-    given = {"form": form, "frequency": 1000.0, "spacing": 500.0, "damping_ratio": 1e-3}
-    rung = changed(flat, "plate_modes", **given).torque_to_pressure
-    frequency, rung = spectra(rung)
-    size = np.abs(rung - 1.0)
-    peaks = np.count_nonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]))
-    assert 22 <= peaks <= 34
-    assert frequency[size > 0.5].min() == pytest.approx(1000.0, abs=5.0) or form == "scattered"

@@ -9,11 +9,8 @@ from models.errors import ParameterError
 from models.rig import LawSpec
 from models.rig_file import load_material_rig
 from sim.effects import EFFECTS
-from sim.effects.effect import activated
 from sim.friction import LAWS
-from sim.motion import simulate_motion
 from sim.run import simulate
-from sim.shaft import ConstantSpeed
 from tests.helpers.contacts import contact_of, hook, solve_contact
 
 THESIS, CALIBRATED = load_material_rig("fluorocarbon-thesis"), load_material_rig("fluorocarbon")
@@ -86,16 +83,6 @@ def test_an_effect_agrees_with_a_sixteenth_of_its_step_anywhere(name, form, spee
     assert error_before_chaos(condition, law, speed, (hook(name, form=form),)) < 1e-4
 
 
-def steep(gain, speed):
-    effects = activated(
-        (LawSpec("velocity_strengthening", {"gain": gain, "speed": speed}),), EFFECTS
-    )
-    return simulate_motion(
-        THESIS, ConstantSpeed(1.0), interference=0.279e-3, support_stiffness=3745.0, seconds=0.1,
-        rate=30e3, effects=effects,
-    )  # fmt: skip
-
-
 def test_a_slip_that_nearly_catches_goes_on():
     # The sliding is least just where a step begins, over and over: 0.1 rad/s, after 0.11 s.
     effects = (
@@ -109,8 +96,9 @@ def test_a_slip_that_nearly_catches_goes_on():
 
 
 def test_what_is_too_steep_is_refused_by_name():
+    steep = LawSpec("velocity_strengthening", {"gain": 5.0, "speed": 0.01})
     with pytest.raises(ParameterError, match=r"velocity_strengthening: the motion changes so fast"):
-        steep(5.0, 0.01)
+        simulate(replace(THESIS, effects=(steep,)), 1.0, seconds=0.1)
 
 
 @pytest.mark.parametrize("form", EFFECTS["partial_slip"].forms)

@@ -60,18 +60,3 @@ def test_hum_has_its_rms_no_mean_and_only_harmonics_of_the_mains(form, frequency
     assert abs(hum.mean()) < 1e-3
     power = np.abs(np.fft.rfft(hum)) ** 2
     assert power[:: round(frequency)].sum() == pytest.approx(power.sum(), rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("form", "strongest", "absent"),
-    [
-        ("sine", [50], [100, 150]),
-        ("harmonics", [50, 150, 250], [100]),
-        ("rectifier", [100, 200], [50]),
-    ],
-)
-def test_the_form_of_a_hum_shows_in_its_lines(form, strongest, absent):
-    hum = read({"torque": np.zeros(96_000)}, "mains_hum", form=form)["torque"]
-    power = np.abs(np.fft.rfft(hum)) ** 2
-    assert sorted(np.argsort(power)[-len(strongest) :].tolist()) == strongest
-    assert power[absent].max() < 1e-6 * power.max()

@@ -60,31 +60,20 @@ def test_every_form_cuts_the_same_share_of_the_peak(amount, form, mean, seed):
     assert np.array_equal(reversed_, -clipped)
 
 
-@pytest.mark.parametrize(("form", "even"), [("hard", False), ("soft", False), ("asymmetric", True)])
-def test_only_asymmetric_clipping_makes_even_harmonics(form, even):
-    clipped = read({"pressure": tone(100.0)}, "clipping", form=form, amount=0.4)["pressure"]
-    lines = np.abs(np.fft.rfft(clipped))[::50]
-    assert lines[3] > 1e-2 * lines[1]
-    assert (lines[2] > 1e-2 * lines[1]) == even
-
-
 # Gain.
 
 
-@given(error=st.floats(-0.9, 2.0), share=st.floats(-1.0, 1.0))
-@settings(max_examples=15)
-def test_a_constant_error_of_gain_is_a_factor(error, share):
+@pytest.mark.parametrize(("error", "share"), [(-0.9, 1.0), (0.3, -0.5), (2.0, 0.0)])
+def test_a_constant_error_of_gain_is_a_factor_and_a_drift_grows_to_it(error, share):
     signals = random_signals()
     changed = read(signals, "gain_error", error=error, torque=share)
     assert changed["torque"] == pytest.approx((1.0 + error * share) * signals["torque"])
     assert changed["pressure"] == pytest.approx((1.0 + error) * signals["pressure"])
     assert np.array_equal(changed["angle"], signals["angle"])
-
-
-def test_a_drift_of_gain_grows_from_nothing_over_the_run():
-    held = {"torque": np.full(1001, 8.0)}
-    drifting = read(held, "gain_error", form="drift", error=0.5)["torque"]
-    assert drifting[[0, 500, 1000]] == pytest.approx([8.0, 10.0, 12.0])
+    drifting = read({"torque": np.full(1001, 8.0)}, "gain_error", form="drift", error=error)
+    assert drifting["torque"][[0, 500, 1000]] == pytest.approx(
+        [8.0, 8.0 + 4.0 * error, 8.0 + 8.0 * error]
+    )
 
 
 @pytest.mark.parametrize("error", [-0.5, 0.8])

@@ -16,11 +16,9 @@ import pytest
 from models.rig_file import load_material_rig
 from noise.cli import main
 from noise.thesis import table
-from noise.thesis.runs import rig_of
 from noise.thesis.table import reasons
 from sim.analysis.critical_speeds import critical_damping, motion_from_rest
 from sim.analysis.regime import Regime, friction_regime
-from tests.helpers.exact_beams import ClampOnBeams, RootMotion, natural_frequencies
 
 PAGE = Path(__file__).parents[1] / "thesis.md"
 STALE = "tests/thesis.md is stale; run: bushing-noise thesis --out tests/thesis.md"
@@ -73,14 +71,6 @@ def test_the_page_has_a_row_for_every_checkable_number():
     assert len({(r["item"], r["condition"]) for r in found}) == len(found)
     assert all(r["item"] == r["item"].lower() and " " not in r["item"] for r in found)
     assert all(r["published"] and r["unit"] and r["verdict"] for r in found)
-
-
-def test_verdicts_are_of_the_small_set():
-    words = {"holds", "misprint", "fails", "refuted", "not checkable"}
-    for found in published_rows():
-        for part in found["verdict"].removesuffix(" (in sample)").split("; "):
-            plain = part.removeprefix("calibrated ")
-            assert plain in words or plain.startswith("off by "), part
 
 
 @pytest.mark.parametrize(
@@ -157,17 +147,6 @@ def test_what_misses_a_measurement_says_so():
             assert found["verdict"].startswith("holds") == (off <= 0.25 + 1e-9)
 
 
-def test_what_parameters_were_chosen_for_says_so_and_is_counted_apart():
-    found = published_rows()
-    of_fit = [r for r in found if r["item"] == "v_crit1" and r["condition"].startswith("0.279")]
-    assert len(of_fit) == 3
-    assert all(r["verdict"].endswith(" (in sample)") for r in of_fit)
-    predicted = [r for r in found if r["item"] == "v_crit1" and r["condition"].startswith("0.178")]
-    assert not any(r["verdict"].endswith(" (in sample)") for r in predicted)
-    holding = sum(r["verdict"] == "holds (in sample)" for r in found)
-    assert f"holds (in sample) {holding}," in PAGE.read_text(encoding="utf-8")
-
-
 def test_what_was_measured_and_missed_is_counted():
     ten = table.number(10.0)
     missed = table.Row("x", "y", "Hz", ten, exact=10.0, calibrated=20.0, measured=True)
@@ -237,23 +216,13 @@ def test_the_command_writes_the_contracts_columns(short, tmp_path, capsys):
     assert "rows: " in err
 
 
-def test_the_command_writes_the_page(short, tmp_path):
-    assert main(["thesis", "--out", str(tmp_path / "t.md")]) == 0
-    assert "| potentiometer_slope |" in (tmp_path / "t.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("name", ["t.docx", "t"])
-def test_an_ending_that_no_table_has_is_refused_before_the_work(name, tmp_path, capsys):
-    assert main(["thesis", "--out", str(tmp_path / name)]) == 2
-    assert ".md" in capsys.readouterr().err
-
-
-def test_a_folder_in_the_place_of_the_page_is_refused_before_the_work(tmp_path, capsys):
-    (tmp_path / "t.md").mkdir()
-    assert main(["thesis", "--out", str(tmp_path / "t.md")]) == 2
-    said = capsys.readouterr().err
-    assert "is a folder" in said
-    assert "preparing" not in said
+def test_what_can_be_no_table_is_refused_before_the_work(tmp_path, capsys):
+    (tmp_path / "folder.md").mkdir()
+    for name, reason in (("t.docx", ".md"), ("t", ".md"), ("folder.md", "is a folder")):
+        assert main(["thesis", "--out", str(tmp_path / name)]) == 2
+        error = capsys.readouterr().err
+        assert reason in error
+        assert "preparing" not in error
 
 
 # Critical speeds and damping
@@ -269,68 +238,3 @@ def test_beyond_the_end_of_stick_slip_there_is_an_island_of_it():
 def test_critical_damping_of_the_equations_is_0_0781():
     found = critical_damping(THESIS, 7.5, interference=0.279e-3, support_stiffness=3745.0)
     assert found == pytest.approx(0.07810, abs=2e-5)
-
-
-# Arithmetic on the thesis's own numbers, which is data
-
-
-def stored(item, column="exact"):
-    rows = [one for one in table.thesis_rows(STORED) if one.item == item]
-    return [getattr(one, column) for one in rows]
-
-
-STORED = ("potentiometer", "torque_cell", "shaft", "beam_modes", "heating")
-
-
-def test_calibrations_are_the_regressions_of_the_printed_tables():
-    volts = [0.0020, 0.0511, 0.0777, 0.1035, 0.1581, 0.2140, 0.2410, 0.3161]  # Table B1
-    meant, printed = (0, 2, 3, 4, 6, 8, 9, 12), (2, 3, 4, 6, 8, 9, 10, 12)
-    for column, twelfths in (("exact", meant), ("as_printed", printed)):
-        slope, offset = np.polyfit(np.pi / 12.0 * np.array(twelfths), volts, 1)
-        assert stored("potentiometer_slope", column) == pytest.approx([slope])
-        assert stored("potentiometer_offset", column) == pytest.approx([offset])
-    down = [-483, -426, -361, -302, -240, -183, -120, -63, 0]  # Table C1 [mV]
-    up = [0, 63, 121, 184, 243, 306, 365, 428, 488]
-    torque = 5.0 * np.arange(9)
-    slopes = [np.polyfit(torque, up, 1)[0], np.polyfit(torque - 40.0, down, 1)[0]]
-    assert stored("torque_cell_slope") == pytest.approx(slopes)
-    assert stored("torque_cell_gain") == pytest.approx([1e3 / slopes[0]])
-
-
-def test_modes_of_the_shaft_follow_from_two_numbers():
-    fixed = np.array(stored("shaft_torsion")[:3]) * 2.0 * np.pi / 16262  # (A14), (A20)
-    assert fixed * np.tan(fixed) == pytest.approx(0.4201, rel=1e-4)
-    assert stored("shaft_torsion")[3:] == pytest.approx([8131.0, 16262.0, 24393.0])
-
-
-def test_modes_of_the_beams_between_rigid_anchors_are_the_exact_ones():
-    beams = replace(rig_of("fluorocarbon-thesis").beams, anchor_rotation=np.inf,
-                    anchor_translation=np.inf)  # fmt: skip
-    lateral = 3500.0 * 4.4482216 / 0.0254  # lb/in
-    long, short = (
-        {
-            motion: natural_frequencies(
-                ClampOnBeams(beams, length, 0.96, 1 / 1050, lateral, 750.0), 6e3, motion
-            )
-            for motion in RootMotion
-        }
-        for length in (0.123, 0.092)
-    )
-    turning, sideways = RootMotion.TURNING, RootMotion.SIDEWAYS
-    assert stored("beam_mode") == pytest.approx([
-        long[sideways][0], short[turning][1], long[turning][0], short[turning][0],
-        long[sideways][1], short[sideways][1], long[sideways][3], long[turning][3],
-    ])  # fmt: skip
-
-
-def test_heat_divides_such_that_shaft_and_rubber_are_equally_warm():
-    (steel, k_steel), (rubber, k_rubber) = (3.95e-6, 14.9), (6.69e-8, 0.16)  # Table G1
-    flux, seconds = 300.0 / 7.69e-4, 0.23
-    rise = [2.0 / k * np.sqrt(d * seconds / np.pi)
-            for d, k in ((steel, k_steel), (rubber, k_rubber))]  # fmt: skip
-    shares = np.array(rise[::-1]) / sum(rise)
-    assert stored("heat_share") == pytest.approx(100.0 * shares)
-    assert stored("temperature_rise")[0] == pytest.approx(flux * shares[0] * rise[0])
-    painted = rise[0] + 50e-6 / 0.2
-    ratio = painted * sum(rise) / rise[0] / (painted + rise[1])
-    assert stored("temperature_rise")[2] == pytest.approx(26.0 * ratio)
