@@ -163,11 +163,10 @@ def plan_run(
     (90000.0, 45000, 90000, 5.0)
     """
     shaft = setting.shaft
-    constant = isinstance(shaft, ConstantSpeed)
     if settling is None:
-        settling = SIMULATION.settling if constant else 0.0
+        settling = SIMULATION.settling if isinstance(shaft, ConstantSpeed) else 0.0
     condition = Condition(
-        speed=shaft.value if constant else None,
+        speed=shaft.value if isinstance(shaft, ConstantSpeed) else None,
         interference=setting.interference,
         support_stiffness=setting.support_stiffness,
         material=setting.rig.material,

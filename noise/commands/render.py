@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError
 from models.recording import Recording
-from models.rig_file import material_names
 from noise.base.files import check_target
 from noise.base.progress import counted, note, report, say, track
 from noise.commands.condition import CONDITION, run_arguments, stated_options, with_notes

@@ -16,7 +16,6 @@ import numpy as np
 from features.kernels.harmonics import analyse_harmonics
 from features.kernels.lines import Lines, find_lines
 from features.kernels.spectra import autospectrum
-from models.bushing import Sleeve
 from models.rig import Rig
 from models.rig_file import load_material_rig, material_names
 from models.structure.beams import beam_structure
@@ -228,12 +227,6 @@ def _effective_stiffness(material: str, case: Case) -> float:
     return 1.0 / (1.0 / case.support_stiffness + 1.0 / stiffness)
 
 
-def _sleeve(material: str) -> Sleeve:
-    sleeve = rig_of(material).sleeve
-    assert sleeve is not None  # the shipped bench states it
-    return sleeve
-
-
 _BEAM_MODES = (250, 310, 900, 1375, 4500, 6000)
 """Measured with beams (5.2.2) [Hz]."""
 
@@ -259,10 +252,6 @@ QUANTITIES: dict[str, Quantity] = {
     "peak_pressure": _recorded(lambda run: np.abs(run.pressure).max()),
     "peak_speed": lambda material, case: float(motion(material, case).sliding_speed.max()),
     "quasi_harmonic_range": lambda *at: _speeds(*at).v_crit2 - _speeds(*at).v_crit1,
-    # With one coefficient of friction the torque goes with the pressure by Lame. Wall and hardness
-    # of the sleeve are chosen for the stiffness at 0.279 mm; no interference changes that.
-    "sleeve_pressure": lambda material, case: _sleeve(material).pressure(case.interference),
-    "sleeve_stiffness": lambda material, _: _sleeve(material).torsional_stiffness,
     "slip_frequency": _of_motion(lambda run: motion_slips(run).rate, steady=math.nan),
     "slip_pattern": _of_motion(lambda run: motion_slips(run).pattern or math.nan),
     "strongest_harmonic": _of_motion(

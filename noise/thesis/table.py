@@ -284,17 +284,14 @@ _OPTIONAL: Mapping[str, Callable[[str], object]] = {
 
 
 def _row(line: Mapping[str, str]) -> Row:
-    optional: dict[str, Any] = {
-        name: of(line[name]) for name, of in _OPTIONAL.items() if line[name]
-    }
+    fields: dict[str, Any] = {name: of(line[name]) for name, of in _OPTIONAL.items() if line[name]}
     return Row(
         line["item"],
         line["condition"],
         line["unit"],
         Published(line["published"], float(line["low"]), float(line["high"])),
         why=reasons().get((line["item"], line["condition"]), ""),
-        **_computed(line),
-        **optional,
+        **fields | _computed(line),
     )
 
 
