@@ -177,10 +177,8 @@ def test_a_graze_of_the_shafts_speed_is_seen_within_a_step(step, phase, way):
 def test_a_graze_of_the_critical_torque_is_seen_within_a_step(step, way):
     # The shaft holds still and the clamp rings: holding torque k_E B cos(omega t).
     system = np.array([1 / 65000, 1 / 1200, 665.0, 3745.0, 0.0, 0.0])
-    peak = 0.005
-    omega = np.sqrt((665.0 + 3745.0) * 1200)
+    peak, omega, n = 0.005, np.sqrt((665.0 + 3745.0) * 1200), round(0.02 / step)
     start = [0.0, 0.0, -way * peak * np.cos(1.1), way * peak * omega * np.sin(1.1)]
-    n = round(0.02 / step)
     for excess, breaks in ((1e-9, False), (-1e-9, True)):
         critical = 665.0 * peak * (1.0 + excess)
         _, _, events = free(system, start, 0.0, n, step, 0.5 * critical, critical, way=0.0)

@@ -107,14 +107,6 @@ def test_steady_sliding_gives_the_torque_of_the_law(name, speed, given):
     assert steady(name, -speed, values) == pytest.approx(-expected, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_torques_twice_as_large_make_twice_the_friction(name):
-    speed = 5.0 * np.sin(np.linspace(0.0, 20.0, 4000))
-    single, _ = follow(name, speed)
-    double, _ = follow(name, speed, torques=(2.0 * T_CRIT, 2.0 * T_KIN))
-    assert double == pytest.approx(2.0 * single, rel=1e-9, abs=1e-9)
-
-
 def within(parameter):
     if parameter.low > 0.0 and parameter.high / parameter.low > 20.0:
         logs = st.floats(math.log(parameter.low), math.log(parameter.high))
@@ -152,14 +144,3 @@ def test_any_parameters_are_followed(name, data):
         for n in (1, 4)
     )
     assert np.abs(coarse[:, :2]).max() < 1.2 * np.abs(fine[:, :2]).max() + 0.1
-
-
-@pytest.mark.parametrize("rest", [2e-4, 1e-3, 3e-3])
-def test_an_ageing_contact_breaks_at_a_torque_that_grows_with_its_rest(rest):
-    given = {"contact_stiffness_per_torque": 1e4, "renewal_angle": 1e-3}
-    parts = [(5.0, 0.02), (0.0, rest), (5.0, 0.005)]
-    speed = np.concatenate([np.full(round(t / 1e-6), v) for v, t in parts])
-    torque, _ = follow("ageing", speed, given, step=1e-6)
-    broke_at = torque[round((0.02 + rest) / 1e-6) :].max()
-    grown = T_KIN + (T_CRIT - T_KIN) * (1.0 - math.exp(-(1e-3 / 5.0 + rest) / 1e-3))
-    assert broke_at == pytest.approx(grown, abs=0.1 * (T_CRIT - T_KIN))

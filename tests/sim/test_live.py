@@ -84,12 +84,6 @@ def test_blocks_joined_are_the_recording(rig, shaft, support):
         assert np.abs(joined - one[kind])[inner].max() < 1e-9 * np.abs(one[kind]).max()
 
 
-def test_effects_of_drive_and_sensors_are_left_out():
-    effects = acting(PDMS, ("speed_fluctuation", "sine"), ("mains_hum", "sine"))
-    with_effects, without = (sound(live(setting(rig)), 5) for rig in (effects, PDMS))
-    assert np.array_equal(with_effects, without)
-
-
 @pytest.mark.parametrize(
     "change",
     [

@@ -5,13 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import butter, find_peaks, hilbert, sosfiltfilt
 
 from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from models.rig import LawSpec
 from models.rig_file import load_material_rig, material_names
-from noise.noise_definition import label_by_physics
 from sim.analysis.critical_speeds import motion_from_rest
 from sim.analysis.regime import Regime, friction_regime, never_slips
 from sim.bushing import lumped_bushing
@@ -65,26 +63,6 @@ def test_squeal_is_the_elastomers_mode_and_not_the_first_torsional_one():
     found = torque_lines(run(FLUOROCARBON, 10.0, stiffness=3745.0))
     elastomer = lumped_bushing(FLUOROCARBON, 0.279e-3, 3745.0).natural_frequencies()[1]
     assert found.frequency[0] == pytest.approx(elastomer, rel=0.12)
-
-
-def jitter(pressure, rate):
-    """Coefficient of variation of the intervals between pulses above 2 kHz."""
-    high = sosfiltfilt(butter(4, 2e3, "highpass", fs=rate, output="sos"), pressure)
-    envelope = sosfiltfilt(butter(2, 500.0, fs=rate, output="sos"), np.abs(hilbert(high)))
-    least = 0.25 * float(np.quantile(envelope, 0.99))
-    intervals = np.diff(find_peaks(envelope, prominence=least)[0])
-    return float(intervals.std() / intervals.mean())
-
-
-@pytest.mark.parametrize("speed", [1.0, 2.5])
-def test_a_creak_is_irregular_and_that_of_the_constant_version_is_not(speed):
-    rough, even = (
-        run(rig, speed, 0.381e-3) for rig in (FLUOROCARBON, constant_version(FLUOROCARBON))
-    )
-    assert label_by_physics(rough) == label_by_physics(even) == "creak"
-    irregular = jitter(rough.pressure, rough.motion.rate)
-    assert irregular >= 0.25
-    assert jitter(even.pressure, even.motion.rate) < 0.5 * irregular
 
 
 def test_the_constant_version_has_no_scatter_and_keeps_an_effect_of_the_users_own():
