@@ -15,7 +15,7 @@ from noise.diagnosis.diagnose import diagnose, diagnose_case
 from noise.diagnosis.outcome import as_json
 from noise.diagnosis.sentences import answer
 from sim.run import simulate
-from tests.helpers.small_rigs import RIG, at, only, run, write_case
+from tests.helpers.small_rigs import RIG, at, run, write_case
 from tests.helpers.wrong_benches import WRONG_BENCHES
 
 SPEEDS = (1.0, 1.6, 1.6, 2.5, 3.5)
@@ -56,13 +56,6 @@ def test_a_wrong_bench_is_told(right, tmp_path, name):
 def test_an_effect_is_no_wrong_bench(name):
     recordings = [run(at(speed), *RIGHT[name], seed=i) for i, speed in enumerate(SPEEDS[1:4])]
     assert bench_findings(_case(recordings)) == ()
-
-
-@pytest.mark.parametrize(
-    "kinds", [("torque",), ("pressure",), ("torque", "pressure"), ("torque", "angle")]
-)
-def test_fewer_channels_are_no_wrong_bench(right, kinds):
-    assert bench_findings(_case([only(one, *kinds) for one in right])) == ()
 
 
 def test_a_shaft_that_turns_backwards_is_no_wrong_bench():
@@ -112,16 +105,6 @@ def test_a_dead_channel_is_left_out_and_said_first(right, tmp_path, channel, val
     assert told.faults == (words,)
     assert not told.bench
     assert math.isfinite(told.gap)
-
-
-def test_a_channel_that_is_dead_in_one_recording_is_left_out_there(right, tmp_path):
-    some = [_filled(right[0], "acceleration", 1.0), *right[1:3]]
-    data, rig = write_case(tmp_path, some)
-    case = read_case([data], load_rig(rig))
-    assert ["acceleration" in one for one in case.recordings] == [False, True, True]
-    (words,) = case.faults
-    assert words.endswith("in run01.wav")
-    assert math.isfinite(diagnose(data, rig, quick=True).gap)
 
 
 def test_a_range_that_the_torque_reaches_is_told(right, tmp_path):

@@ -7,7 +7,6 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from models.rig import LawSpec
 from noise.training.causes.cases.draw import Truth, visible_through
 from noise.training.causes.cases.rigs import (
     DEPARTURES,
@@ -19,7 +18,6 @@ from noise.training.causes.cases.rigs import (
     draw_start,
     scaled_law,
 )
-from sim.acquisition import Acquisition
 from sim.friction import LAWS, friction_law
 from sim.parameters import resolve
 
@@ -42,21 +40,6 @@ def test_a_third_is_quiet_half_have_the_constant_law_and_all_departures_are_met(
     assert {bench.start for bench in benches} == {"", *STARTS}
 
 
-def test_a_departure_changes_what_it_names_and_nothing_else(benches):
-    usual = Acquisition().noise
-    for bench in benches:
-        met = bench.departures
-        assert bool(bench.law) == ("laws" in met)
-        assert (set(bench.sizes.values()) != {1.0}) == ("sizes" in met)
-        assert bool(bench.listed) == ("listed" in met)
-        assert bench.repeats != ("single" in met)
-        assert bool(bench.wrong_speed) == bool(bench.warmer) == ("conditions" in met)
-        assert (bench.responses != "good") == ("responses" in met)
-        assert bool(bench.start) == ("starts" in met)
-        rough = any(not 0.7 <= bench.noise[kind] / usual[kind] <= 1.6 for kind in usual)
-        assert not (rough or bench.bits) or "sensors" in met
-
-
 def test_every_law_of_the_simulator_is_met_within_its_range():
     own = set(OWN_LAWS) - set(MATERIALS)
     assert own == set(LAWS) - {"coulomb"}
@@ -66,16 +49,6 @@ def test_every_law_of_the_simulator_is_met_within_its_range():
             resolve(name, friction_law(name).parameters, law.parameters)
             far = scaled_law(law, angle=9.0, time=0.3, torque=3.0)
             resolve(name, friction_law(name).parameters, far.parameters)
-
-
-def test_a_law_on_a_rig_of_another_size_is_scaled_by_the_units_of_its_numbers():
-    law = LawSpec("contact_with_memory", {"ageing_time": 1e-3, "weakening_share": 0.1})
-    other = scaled_law(law, angle=2.0, time=0.5, torque=4.0).parameters
-    plain = scaled_law(law, angle=1.0, time=1.0, torque=1.0).parameters
-    assert other["ageing_time"] == pytest.approx(0.5e-3)
-    assert other["weakening_share"] == 0.1
-    assert other["contact_stiffness_per_torque"] == plain["contact_stiffness_per_torque"] / 2.0
-    assert other["weakening_speed"] == plain["weakening_speed"] * 4.0
 
 
 @pytest.mark.parametrize("name", STARTS)

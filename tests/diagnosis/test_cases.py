@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
+import math
 import wave
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from models.condition import Condition
 from models.errors import ParameterError
-from models.rig_file import load_rig
+from models.rig_file import load_material_rig, load_rig
 from noise.cli import main
-from noise.diagnosis.case import read_case, usable
-from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, at, only, run, write_case
+from noise.diagnosis.case import Case, usable, with_conditions
+from noise.diagnosis.causes.advice import unseen_causes
+from noise.diagnosis.diagnose import assumed_fit, case_remarks, diagnose
+from sim.effects import EFFECTS
+from tests.helpers.small_rigs import RIG, RIG_FILE, at, only, run, write_case
 
 
 @pytest.fixture(scope="module")
@@ -98,11 +103,6 @@ def test_what_a_recording_lacks_is_said(recordings, change, said):
     assert "\n" not in str(refused.value)
 
 
-def test_an_interference_that_the_rig_file_does_not_reach_is_refused(recordings):
-    with pytest.raises(ParameterError, match=r"interference_mm = 0\.381.*0\.279"):
-        usable(_without(recordings[0], interference=0.381e-3), RIG)
-
-
 def test_recordings_of_a_support_whose_response_was_not_measured_are_refused(
     recordings, tmp_path, capsys
 ):
@@ -144,18 +144,74 @@ def test_recordings_of_several_rates_are_answered(recordings, tmp_path, capsys):
     assert json.loads(out)["gap"] > 0
 
 
-def test_a_file_of_effects_that_cannot_be_used_is_named(recordings, tmp_path, capsys):
-    data, rig = write_case(tmp_path, recordings)
-    (tmp_path / "mine.py").write_text("EFFECT = 1 / 0\n")
-    code, line = _refused(capsys, data, "--rig", rig, "--effects", tmp_path / "mine.py")
-    assert code == 2
-    assert "mine.py" in line
+@pytest.mark.parametrize("text", ['base = "fluorocarbon-thesis"', 'material = "PDMS"', ""])
+def test_the_bushing_that_was_not_stated_is_named(tmp_path, text):
+    path = tmp_path / "rig.toml"
+    path.write_text(text, encoding="utf-8")
+    assert assumed_fit(load_rig(path)).startswith("no [[fit]] of its own")
+    path.write_text(RIG_FILE, encoding="utf-8")
+    assert assumed_fit(load_rig(path)) == ""
 
 
-def test_a_case_names_what_it_holds_and_what_it_refused(recordings, tmp_path):
-    data, rig = write_case(tmp_path, recordings)
-    _music(data / "sub")
-    case = read_case([data], load_rig(rig))
-    assert case.names == ("run01.wav", "run02.wav")
-    assert [name for name, _ in case.refused] == ["sub/song.wav"]
-    assert case.recordings[0].rate == RATE
+@pytest.mark.parametrize(("heat", "far"), [(25.0, False), (60.0, True)])
+def test_recordings_far_from_the_temperature_of_a_shipped_bushing_say_so(heat, far):
+    recording = run(at(1.0))
+    hot = replace(recording, condition=replace(recording.condition, temperature=heat))
+    case = Case(load_material_rig("fluorocarbon-thesis"), ("run",), (hot,))
+    assert far == any("temperature 60" in text for text in case_remarks(case, EFFECTS))
+
+
+@pytest.mark.parametrize("speed", [0.6, -4.0])
+def test_the_speed_is_the_angles(speed):
+    recorded = only(run(at(speed), seconds=0.3), "torque", "angle")
+    stated = Condition(support_stiffness=2214.0, interference=0.279e-3)
+    taken = with_conditions(replace(recorded, condition=stated), RIG)
+    assert taken.condition.speed == pytest.approx(speed, rel=0.05)
+    assert taken.notes[0].startswith("speed taken as ")
+
+
+def test_the_only_fit_and_the_only_support_are_taken():
+    (fit, *_) = RIG.fits
+    one = replace(RIG, measured=(), fits=(replace(fit, damping={math.inf: 0.1}),))
+    taken = with_conditions(replace(run(at(1.0)), condition=Condition(speed=1.0)), one)
+    assert taken.condition.interference == fit.interference
+    assert taken.condition.support_stiffness == math.inf
+
+
+def test_what_nothing_tells_is_asked_for():
+    recorded = replace(only(run(at(0.8)), "pressure"), name="run03.wav", condition=Condition())
+    several = replace(RIG, fits=(RIG.fits[0], replace(RIG.fits[0], interference=0.3e-3)))
+    with pytest.raises(
+        ParameterError, match=r"states no speed_rad_s.*write into run03\.json"
+    ) as no:
+        usable(recorded, several)
+    assert '"interference_mm" (of the rig file: 0.279, 0.3)' in str(no.value)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return [run(at(speed), seed=i) for i, speed in enumerate((1.0, 1.6, 1.6))]
+
+
+@pytest.mark.parametrize(
+    ("kinds", "words"),
+    [
+        (("pressure",), "no torque"),
+        (("torque",), "no acceleration and no sound"),
+        (("torque", "pressure"), "no acceleration"),
+        (("acceleration", "pressure"), "by acceleration and sound alone"),
+        (("torque", "acceleration", "pressure"), "no shaft angle"),
+    ],
+)
+def test_each_set_is_answered_and_its_cost_is_said(plain, tmp_path, kinds, words):
+    data, rig = write_case(tmp_path, [only(one, *kinds) for one in plain])
+    told = diagnose(data, rig, quick=True)
+    assert math.isfinite(told.gap)
+    assert any(words in note for note in told.notes)
+    assert all(told.probabilities[name] == 0.0 for name in unseen_causes(kinds))
+    assert told.bench == ()
+
+
+def test_a_sound_shows_structure_and_room_and_a_torque_does_not():
+    assert unseen_causes({"pressure"}) == frozenset()
+    assert {"beam_modes", "slip_pulse", "plate_modes"} <= unseen_causes({"torque", "angle"})

@@ -10,10 +10,10 @@ from noise.diagnosis.evidence.channel_summary import (
     band_bins,
     path_summary,
 )
-from noise.diagnosis.evidence.reconstruction import angle_summary, shaft_speed
+from noise.diagnosis.evidence.reconstruction import angle_summary
 from noise.diagnosis.evidence.summary import summary
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
-from tests.helpers.small_rigs import RATE, RIG, at, only, run
+from tests.helpers.small_rigs import RATE, RIG, at, run
 
 CONDITION = at(1.0)
 
@@ -128,38 +128,6 @@ def test_noise_that_the_torque_does_not_explain_is_incoherent_in_its_band_alone(
     assert all(seen[9] - seen[i] > 2.0 for i in seen if abs(i - 9) > 1)
 
 
-def test_blows_at_the_slips_are_told_from_what_lasts():
-    rng = np.random.default_rng(5)
-    n, slips = 20000, np.arange(0.12, 0.75, 0.03)
-    since = np.full(n, np.inf)
-    for start in (slips * RATE).astype(int):
-        since[start : start + 700] = np.arange(700)[: n - start]
-    tone = np.sin(2 * np.pi * 5000 * np.arange(n) / RATE)
-    blows = np.where(np.isfinite(since), np.exp(-np.minimum(since, 1e6) / 20.0), 0.0) * tone
-    expected = rng.normal(size=n)
-    struck, _ = path_summary(expected, expected + blows, RATE, slips)
-    hissing, _ = path_summary(expected, expected + 0.3 * rng.normal(size=n), RATE, slips)
-    assert struck["high_at_slips"] > hissing["high_at_slips"] + 2
-    assert abs(hissing["high_at_slips"]) < 0.3
-
-
-@pytest.mark.parametrize("speed", [0.5, 5.0, -3.0])
-def test_the_speed_of_the_shaft_is_the_slope_of_its_angle(speed):
-    time = np.arange(12800) / RATE
-    even = shaft_speed(speed * time + 2.0, RATE)
-    assert even == pytest.approx(np.full(time.size, speed), abs=1e-6)
-
-
-def test_slow_changes_of_speed_are_followed_and_fast_ones_not():
-    time = np.arange(25600) / RATE
-    for frequency, share in ((4.0, 1.0), (20.0, 1.0), (45.0, 1.0), (200.0, 0.0)):
-        away = 0.3 * np.sin(2 * np.pi * frequency * time)
-        found = shaft_speed(2.0 * time + (0.3 - 0.3 * np.cos(2 * np.pi * frequency * time))
-                            / (2 * np.pi * frequency), RATE)  # fmt: skip
-        left = (found - 2.0 - share * away)[2560:-2560]
-        assert np.abs(left).max() < 0.03, frequency
-
-
 @pytest.mark.parametrize("frequency", [3.0, 12.0, 30.0])
 def test_an_uneven_shaft_is_seen_in_its_angle_with_its_frequency(frequency):
     time = np.arange(25600) / RATE
@@ -170,13 +138,3 @@ def test_an_uneven_shaft_is_seen_in_its_angle_with_its_frequency(frequency):
     assert uneven["speed_spread"] > plain["speed_spread"] + 0.5
     assert uneven["speed_line"] > plain["speed_line"]
     assert np.exp(uneven["speed_line_at"]) == pytest.approx(frequency, abs=1.5)
-
-
-def test_a_channel_that_is_missing_has_no_numbers(recording, numbers_of):
-    whole = numbers_of(recording)
-    for kinds in (("torque",), ("pressure",), ("torque", "pressure"), ("acceleration", "angle")):
-        numbers = numbers_of(only(recording, *kinds))
-        heads = {name.split("_")[0] for name in numbers}
-        derived = {"contact"} if "torque" in kinds else set()
-        assert heads == set(kinds) | derived
-        assert set(numbers) <= set(whole)

@@ -11,7 +11,6 @@ from dataclasses import replace
 import pytest
 
 from models.condition import FIXED
-from models.errors import ParameterError
 from noise.base.user_effects import effect_library
 from noise.cli import main
 from noise.diagnosis.causes.posterior import load_posterior
@@ -20,7 +19,7 @@ from noise.diagnosis.outcome import as_json
 from sim.effects import EFFECTS
 from tests.helpers.answered_diagnoses import as_the_contract_has_it
 from tests.helpers.made_diagnoses import one_effect
-from tests.helpers.small_rigs import RIG_FILE, at, only, run, write_case
+from tests.helpers.small_rigs import at, only, run, write_case
 
 RECTIFIER = """
 import numpy as np
@@ -112,14 +111,6 @@ def test_fewer_signals_are_answered_to_the_end(tmp_path, capsys, kinds, how):
     assert told["next_measurement"].startswith("record ") or not told["verdict"]
 
 
-@pytest.mark.slow
-def test_one_recording_is_answered_to_the_end(tmp_path, capsys):
-    data, rig = write_case(tmp_path, _recordings(WEAK, conditions=CONDITIONS[3:]))
-    told = _told(capsys, data, "--rig", rig)
-    as_the_contract_has_it(told)
-    assert told["held_out"] == ["run01.wav"]
-
-
 def test_a_shaft_that_turns_backwards_is_answered_alike(plain, answered, tmp_path, capsys):
     backwards = [
         replace(r, samples=-r.samples, condition=replace(r.condition, speed=-r.condition.speed))
@@ -130,22 +121,6 @@ def test_a_shaft_that_turns_backwards_is_answered_alike(plain, answered, tmp_pat
     assert answers[0]["verdict"] == answers[1]["verdict"]
     friction = [a["stages"]["friction"]["gap"] for a in answers]
     assert friction[1] == pytest.approx(friction[0], rel=0.2)
-
-
-def test_what_the_rig_file_lists_is_no_finding(tmp_path, capsys):
-    recordings = _recordings(("velocity_weakening", {"form": "exponential", "share": 0.35,
-                                                     "speed": 5.0}))  # fmt: skip
-    spec = 'effects = ["velocity_weakening:form=exponential,share=0.35,speed=5"]'
-    gaps = {}
-    for name, text in (("lacks", RIG_FILE), ("lists", RIG_FILE.replace("effects = []", spec))):
-        data, rig = write_case(tmp_path / name, recordings, text)
-        gaps[name] = _told(capsys, data, "--rig", rig, "--quick")
-    assert gaps["lists"]["probabilities"]["velocity_weakening"] == 0.0
-    assert "velocity_weakening" not in gaps["lists"]["verdict"]
-    assert (
-        gaps["lists"]["stages"]["friction"]["gap"]
-        < 0.5 * gaps["lacks"]["stages"]["friction"]["gap"]
-    )
 
 
 @pytest.fixture
@@ -174,26 +149,6 @@ def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
     assert first["parameters"]["share"] == pytest.approx(0.8, abs=0.2)
     assert first["closed"] > 0.5
     assert told["location"]["stage"] == "measurement"
-
-
-@pytest.mark.slow
-def test_a_notebook_takes_effects_of_the_users_own_as_the_command_does(tmp_path, capsys):
-    mine, other = tmp_path / "rectifier.py", tmp_path / "other.py"
-    mine.write_text(RECTIFIER)
-    other.write_text(RECTIFIER.replace('"rectifier"', '"folded"'))
-    listed = RIG_FILE.replace("effects = []", 'effects = ["rectifier:share=0.8"]')
-    recordings = _recordings(("rectifier", {"share": 0.8}), library=effect_library(mine))
-    data, rig = write_case(tmp_path, recordings, listed)
-    told = _told(capsys, data, "--rig", rig, "--effects", mine, "--quick")
-    found = as_json(diagnose(data, rig, effects=mine, quick=True))
-    assert {**found, "seconds": 0.0} == {**told, "seconds": 0.0}
-    more = as_json(diagnose(data, rig, effects=[str(mine), other], quick=True))
-    assert {**more, "seconds": 0.0} == {**told, "seconds": 0.0}
-    (tmp_path / "mine.py").write_text(RECTIFIER)
-    with pytest.raises(ParameterError, match=r"mine.py: effect 'rectifier' is defined in another"):
-        diagnose(data, rig, effects=[mine, tmp_path / "mine.py"], quick=True)
-    with pytest.raises(ParameterError, match=r"nowhere\.py"):
-        diagnose(data, rig, effects=tmp_path / "nowhere.py")
 
 
 def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_say_so(

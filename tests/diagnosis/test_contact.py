@@ -14,7 +14,7 @@ from noise.diagnosis.evidence.reconstruction import reconstruct
 from noise.diagnosis.evidence.summary import case_table, summary
 from noise.diagnosis.simulated.transfer_functions import torque_transfer_functions
 from sim.bushing import lumped_bushing
-from tests.helpers.small_rigs import RATE, RIG, at, only, run
+from tests.helpers.small_rigs import RATE, RIG, at, run
 
 FIT, SECONDS = RIG.fits[0], 0.6
 
@@ -88,12 +88,6 @@ def test_a_stiffer_elastomer_than_the_rig_file_has_is_seen_in_stick(plain):
     assert found["kinetic"] == pytest.approx(plain["kinetic"], abs=0.02)
 
 
-def test_a_sliding_contact_has_no_cycle(plain):
-    sliding = _numbers(speed=30.0)
-    assert "peak" not in sliding
-    assert "sliding_torque" not in plain
-
-
 def test_a_shaft_that_turns_the_other_way_makes_the_same_contact():
     # all of the rig is odd: torque and motion change sign together
     condition = at(2.0)
@@ -121,26 +115,3 @@ def test_a_table_has_a_row_a_recording_and_no_infinite_number():
     # repeats of the rig file itself are what they are compared with
     z = (table.measured - table.nominal) / (table.scatter + 0.02 * np.abs(table.nominal) + 1e-3)
     assert np.nanmedian(np.abs(z)) < 1.5
-
-
-def test_recordings_of_other_rates_and_lengths_are_compared_with_their_own_repeats():
-    mixed = [run(at(2.0), seed=0), run(at(2.0), seed=1, rate=48e3, seconds=0.6)]
-    both = case_table(mixed, RIG)
-    alone = case_table(mixed[1:], RIG)
-    place = [both.names.index(name) for name in alone.names]
-    spread = alone.scatter[0] + 0.02 * np.abs(alone.nominal[0]) + 1e-3
-    away = np.nanmedian(np.abs(both.nominal[:, place] - alone.nominal[0]) / spread, axis=1)
-    assert away[1] < 0.3  # other simulated rigs, of the same rate and length
-    assert away[0] > 2.0 * away[1]
-
-
-@pytest.mark.parametrize(
-    "kinds", [("pressure",), ("torque", "pressure"), ("acceleration", "angle")]
-)
-def test_repeats_are_listened_to_through_the_same_channels(kinds):
-    table = case_table([only(run(at(2.0)), *kinds)], RIG)
-    apart = np.array([not name.startswith("contact") for name in table.names])
-    assert np.isfinite(table.measured[:, apart]).all()
-    assert np.isfinite(table.nominal[:, apart]).all()
-    heads = {name.split("_")[0] for name in table.names}
-    assert heads == set(kinds) | ({"contact"} if "torque" in kinds else set())

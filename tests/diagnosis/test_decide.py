@@ -14,7 +14,6 @@ from models.errors import ParameterError
 from models.rig import LawSpec
 from noise.diagnosis.causes.verdict import likeliest, normalised
 from noise.diagnosis.fit import decide
-from noise.diagnosis.fit.closing import closed_of, room_of
 from noise.diagnosis.fit.decide import (
     CaseFits,
     HypothesisFit,
@@ -25,7 +24,6 @@ from noise.diagnosis.fit.decide import (
     weakened,
 )
 from noise.diagnosis.fit.fit import Fitted, split
-from noise.diagnosis.fit.fits import illustrations_of, strength_interval
 from noise.diagnosis.simulated.model_runs import Model
 from sim.effects import EFFECTS
 
@@ -82,17 +80,6 @@ def test_the_plainer_it_shows_the_likelier_it_is(one, other):
     assert (first - second) * (one - other) >= 0.0
 
 
-def test_of_two_fits_of_one_effect_the_one_in_which_the_other_shows_less_counts():
-    before = chances({PARTIAL: 0.3, PAIR: 0.3})
-    fits = {PARTIAL: 2.0, WEAK: 2.0}
-    rows = left_by((PARTIAL, 0.9), (WEAK, 0.5))  # of which partial slip shows with 0.1
-    both, alone = (
-        updated(before, fits_of(8.0, 7.9, fits, remaining=remaining))[PAIR]
-        for remaining in (rows, left_by((PARTIAL, 0.9)))
-    )
-    assert both < alone
-
-
 @given(gaps, gaps, gaps)
 def test_of_two_fits_the_one_that_leaves_less_is_favoured(recalibrated, one, other):
     before = chances({PARTIAL: 0.3, WEAK: 0.3})
@@ -105,36 +92,6 @@ def test_where_parameters_close_all_they_gain_and_names_keep_their_odds():
     now = updated(before, fits_of(6.0, 1.0, {PARTIAL: 1.0}))
     assert now[PARTIAL] / now[UNKNOWN] == pytest.approx(before[PARTIAL] / before[UNKNOWN])
     assert now[PARAMETERS] / now[UNKNOWN] > before[PARAMETERS] / before[UNKNOWN]
-
-
-def test_an_effect_of_the_users_own_gains_by_what_it_closes_and_loses_by_what_it_opens():
-    before = chances({PARTIAL: 0.3}, unknown=0.4)
-    closing, worse = (
-        updated(before, fits_of(6.0, 5.0, {PARTIAL: left}, unlearned=PARTIAL))
-        for left in (1.2, 6.5)
-    )
-    assert closing[PARTIAL] / closing[PARAMETERS] > before[PARTIAL] / before[PARAMETERS]
-    assert worse[PARTIAL] / worse[PARAMETERS] < before[PARTIAL] / before[PARAMETERS]
-    assert likeliest(closing) == ("partial_slip",)
-
-
-def test_an_effect_of_the_users_own_that_closes_no_more_than_a_known_one_gains_nothing():
-    before = chances({PARTIAL: 0.1, WEAK: 0.6})
-    now = updated(before, fits_of(6.0, 5.0, {PARTIAL: 1.2, WEAK: 1.2}, unlearned=PARTIAL))
-    assert now[PARTIAL] / now[WEAK] <= before[PARTIAL] / before[WEAK]
-
-
-@given(gaps, gaps)
-def test_shares_stay_within_what_they_are_shares_of(before, after):
-    assert -1.0 <= closed_of(before, after) <= room_of(before) < 1.0
-
-
-def test_a_gap_as_of_repeats_speaks_for_nothing_being_the_matter():
-    small, large = (
-        updated(chances({PARTIAL: 0.5}, none=0.1), fits_of(gap, gap, {PARTIAL: gap}))[NONE]
-        for gap in (1.0, 6.0)
-    )
-    assert small > large
 
 
 def test_a_fit_that_makes_it_worse_hands_half_of_its_chance_to_the_unknown():
@@ -199,13 +156,6 @@ def test_what_is_held_out_has_a_gap_where_more_than_one_condition_has():
     assert 1 in held
 
 
-def test_it_is_said_where_no_fit_could_be_tried_on_a_gap_it_had_not_seen():
-    fits = fits_of([6.0, 6.0, 1.0, 1.0], 1.0, {PARTIAL: 1.0})
-    judged = decide.Judged(None, (2, 3), fits, {}, {}, ())
-    assert "record the condition" in fit_notes(judged)[0]
-    assert not fit_notes(decide.Judged(None, (2, 3), fits_of(6.0, 1.0, {}), {}, {}, ()))
-
-
 @pytest.fixture
 def fitted(monkeypatch):
     """Gaps that fits leave, in place of fits; what was fitted is noted."""
@@ -229,32 +179,10 @@ def fitted(monkeypatch):
     return tried
 
 
-def test_no_more_is_fitted_once_a_sure_one_closes_some_of_the_gap(fitted):
-    before = chances({PARTIAL: 0.9, WEAK: 0.05}, unknown=0.04)
-    assert fitted(before, {PARTIAL: 3.0})[1] == [PARTIAL]
-
-
 def test_the_first_three_are_fitted_where_the_likeliest_closes_nothing(fitted):
     third = frozenset({"static_ageing"})
     before = chances({PARTIAL: 0.96, WEAK: 0.01, third: 0.005}, unknown=0.001, parameters=0.001)
     assert fitted(before, {PARTIAL: 6.5, WEAK: 6.5})[1] == [PARTIAL, WEAK, third]
-
-
-def test_what_a_fit_leaves_is_diagnosed_where_it_tells_of_larger_sets(fitted):
-    before, diagnosed = chances({PARTIAL: 0.5, WEAK: 0.2, PAIR: 0.2}), []
-
-    def left_by(model):
-        diagnosed.append(model)
-        return {}
-
-    _, noted = fitted(before, {}, WEAK, left_by)
-    assert set(noted) == {WEAK, PARTIAL, PAIR}
-    assert diagnosed == [PARTIAL]
-
-
-def test_effects_of_the_users_own_are_fitted_whatever_their_chance(fitted):
-    before = chances({PARTIAL: 0.01}, parameters=0.9)
-    assert fitted(before, {}, ["background_noise"])[1][0] == {"background_noise"}
 
 
 def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitted):
@@ -264,21 +192,3 @@ def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitt
     assert fits.impossible == {film: "steps of 1e-07 s cannot follow"}
     (note,) = fit_notes(SimpleNamespace(fits=fits, among=(), verdict=()))
     assert note.startswith("transfer_film was not fitted")
-
-
-def test_a_recording_whose_simulation_breaks_down_is_not_shown():
-    def breaks_down(recording):
-        raise ParameterError("steps of 1e-07 s cannot follow")
-
-    case = SimpleNamespace(recordings=(None,), names=("a",), rig=None)
-    assert illustrations_of(case, (0,), lambda recording: recording, breaks_down) == ()
-
-
-def test_a_strength_is_no_surer_than_its_form():
-    spec = LawSpec("slip_pulse", {"form": "triangle", "amplitude": 200.0})
-    comparison = SimpleNamespace(effect_of=lambda spec: EFFECTS[spec.name])
-    fitted = SimpleNamespace(comparison=comparison, spread={"slip_pulse.amplitude": 1e-3})
-    low, high = strength_interval(fitted, spec)
-    assert low * high == pytest.approx(200.0**2)
-    assert low < 100.0 < 400.0 < high
-    assert strength_interval(SimpleNamespace(comparison=comparison, spread={}), spec) is None

@@ -10,7 +10,6 @@ from hypothesis import given, settings, strategies as st
 
 from noise.diagnosis.evidence.summary import (
     CONTEXT,
-    MISSING,
     PARTS,
     evidence,
     evidence_names,
@@ -59,16 +58,6 @@ def test_the_order_of_recordings_does_not_count(order, seed):
     assert one == pytest.approx(other, rel=1e-5, abs=1e-5)
 
 
-def test_a_rig_that_turns_backwards_is_the_same_case():
-    measured = np.random.default_rng(3).normal(size=(5, 3))
-    speeds = np.array([1.0, 2.0, 2.0, 3.0, 5.0])
-    one, other = (
-        evidence(table_of(NAMES, measured, speeds=list(way * speeds)), NAMES, SCALE)
-        for way in (1.0, -1.0)
-    )
-    assert np.array_equal(one, other)
-
-
 def test_each_part_says_what_its_name_says():
     measured = [[1.0, 0.0, 0.0], [1.0, 0.0, 5.0], [1.0, 4.0, 5.0], [1.0, 4.0, 5.0]]
     table = table_of(NAMES, measured, scatter=0.0, speeds=[1.0, 2.0, 3.0, 4.0])
@@ -83,16 +72,6 @@ def test_each_part_says_what_its_name_says():
     assert len(row) == (len(PARTS) + 1) * len(NAMES) + len(CONTEXT) + 3
 
 
-def test_repeats_that_differ_are_told_from_conditions_that_differ():
-    apart = [[0.0] * 3, [6.0] * 3, [0.0] * 3, [6.0] * 3]
-    repeated, conditions = (
-        evidence(table_of(NAMES, apart, scatter=0.0, speeds=speeds), NAMES, SCALE)
-        for speeds in ([1, 1, 2, 2], [1, 2, 1, 2])
-    )
-    assert _part(repeated, "repeats", "contact_peak") == pytest.approx(6.0)
-    assert _part(conditions, "repeats", "contact_peak") == pytest.approx(0.0)
-
-
 def test_the_scale_is_what_cases_without_a_cause_scatter_by_beyond_their_repeats():
     rng = np.random.default_rng(1)
     sizes = np.array([0.5, 3.0, 20.0])
@@ -105,12 +84,3 @@ def test_the_scale_is_what_cases_without_a_cause_scatter_by_beyond_their_repeats
     some = scale_of(tables, (*NAMES, "of_nobody"))
     assert np.isfinite(some).all()
     assert (some > 0).all()
-
-
-def test_a_case_says_what_bench_it_is_from():
-    table = table_of(NAMES, np.zeros((4, 3)), speeds=[1.0, 1.0, 2.0, 3.0])
-    row = evidence(replace(table, bench={"seconds": 2.5, "torque_noise": -0.3}), NAMES, SCALE)
-    said = dict(zip(evidence_names(NAMES), row.tolist(), strict=True))
-    assert (said["seconds"], said["conditions"]) == (2.5, 3.0)
-    assert said["torque_noise"] == pytest.approx(-0.3)
-    assert said["angle_noise"] == MISSING

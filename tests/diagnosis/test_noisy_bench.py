@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from noise.diagnosis.causes.posterior import as_seldom
 from noise.diagnosis.diagnose import diagnose
 from noise.diagnosis.floor import reference
 from noise.diagnosis.gap import gap_of
-from noise.diagnosis.sentences import headline, verdict_sentence
+from noise.diagnosis.sentences import headline
 from noise.diagnosis.signature import NAMES
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG_FILE, at, run, write_case
@@ -52,20 +51,3 @@ def test_p_values_of_repeats_are_even_and_those_of_others_fall_below_any_thresho
     assert 0.25 < np.median(p) < 0.75
     far = gap_of(list(rng.normal(6.0, 1.0, (n, len(NAMES)))), [known] * n)
     assert far.p_value < 0.002
-
-
-def test_how_seldom_an_answer_is_follows_from_ranks_and_of_one_recording_from_their_tail():
-    nulls = np.random.default_rng(1).normal(size=200)
-    assert as_seldom(nulls.min() - 1.0, nulls, 4) == pytest.approx(1.0 / 201.0)
-    assert as_seldom(-2.0, nulls, 1) > as_seldom(-2.0, nulls, 4)
-    assert as_seldom(-30.0, nulls, 1) < 0.01
-
-
-def test_a_gap_that_repeats_do_not_have_is_not_said_to_be_like_theirs(tmp_path):
-    runs = [run(at(v), seed=i) for i, v in enumerate((1.0, 2.0))]
-    quiet = diagnose(*write_case(tmp_path, runs), quick=True)
-    large = replace(quiet, verdict=(), gap=2.4, p_value=2e-4)
-    assert headline(large) == "No cause to name"
-    assert "by more than simulated repeats do" in verdict_sentence(large)
-    small = replace(large, gap=0.9, p_value=0.4, agreement=())
-    assert "differ as repeats do" in verdict_sentence(small)

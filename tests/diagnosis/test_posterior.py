@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,16 +18,11 @@ from noise.diagnosis.causes.verdict import (
     needs_explaining,
 )
 from noise.diagnosis.gap import Gap
-from noise.training.causes.cases.draw import Truth
 from noise.training.causes.fit import (
-    Known,
-    causes_of,
     grow_cause_trees,
-    with_channels,
-    with_fewer,
 )
 from sim.effects import EFFECTS
-from tests.helpers.made_posteriors import MOVES, NAMES, made_posterior, made_table
+from tests.helpers.made_posteriors import MOVES, made_posterior, made_table
 
 
 @pytest.fixture(scope="module")
@@ -52,21 +46,6 @@ def test_at_most_few_cases_without_a_cause_raise_the_alarm(posterior):
     alarms = [needs_explaining(posterior.probabilities(t)["none"], posterior.alarm) for t in tables]
     assert np.mean(alarms) <= 0.05
     assert 0.0 < posterior.alarm <= 0.5
-
-
-def test_a_posterior_comes_back_from_its_file(posterior, tmp_path):
-    path = tmp_path / "causes.npz"
-    posterior.save(path)
-    back = load_posterior(path)
-    assert back.names == posterior.names
-    assert back.alarm == posterior.alarm
-    assert dict(back.card) == dict(posterior.card)
-    table = made_table(np.random.default_rng(2), "beam_modes")
-    one, other = posterior.probabilities(table), back.probabilities(table)
-    assert other == one
-    again = tmp_path / "again.npz"
-    back.save(again)
-    assert load_posterior(again).probabilities(table) == other
 
 
 @pytest.mark.parametrize("kind", ["causes", "loop"])
@@ -102,54 +81,6 @@ def test_trees_that_are_offered_all_columns_say_what_scikit_learn_says():
     assert trees.scores(x) == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_cause_that_no_case_has_or_all_have_is_never_or_always_there():
-    x = np.random.default_rng(0).normal(size=(60, 3)).astype(np.float32)
-    y = np.stack([np.zeros(60), x[:, 0] > 0.0, np.ones(60)], axis=1).astype(np.int64)
-    scores = grow_cause_trees(x, y, n_rounds=3, seed=0).scores(x)
-    assert (scores[:, 0] < -5.0).all()
-    assert (scores[:, 2] > 5.0).all()
-
-
-def test_causes_at_work_are_those_of_the_case():
-    pair = causes_of(Truth("pair", ("clipping", "beam_modes")))
-    assert {CAUSES[i] for i in np.flatnonzero(pair)} == {"clipping", "beam_modes"}
-    for kind in ("none", "parameters", "unknown"):
-        (one,) = np.flatnonzero(causes_of(Truth(kind, ("cogging",) * (kind == "unknown"))))
-        assert CAUSES[one] == kind
-
-
-@pytest.mark.parametrize(
-    ("channels", "left"),
-    [
-        (("pressure",), {"pressure_top"}),
-        (("torque",), {n for n in NAMES if n.startswith(("contact", "torque"))}),
-        (("pressure", "angle"), {"pressure_top", "angle_speed_spread"}),
-        (("torque", "acceleration", "pressure"), set(NAMES) - {"angle_speed_spread"}),
-    ],
-)  # fmt: skip
-def test_fewer_channels_leave_what_they_tell(channels, left):
-    table = made_table(np.random.default_rng(0))
-    fewer = with_channels(Known(table, Truth("none")), channels).table
-    known = {name for name, x in zip(NAMES, fewer.measured[0], strict=True) if np.isfinite(x)}
-    assert known == left
-
-
-def test_fewer_recordings_are_some_of_those_that_there_are():
-    rng = np.random.default_rng(0)
-    case = Known(made_table(rng), Truth("none"), 7)
-    sizes = set()
-    for _ in range(20):
-        fewer = with_fewer(case, rng)
-        assert fewer.rig == 7
-        rows = [case.table.measured.tolist().index(row) for row in fewer.table.measured.tolist()]
-        assert rows == sorted(set(rows))
-        assert fewer.table.conditions == tuple(case.table.conditions[i] for i in rows)
-        sizes.add(len(rows))
-    assert sizes == {3}  # of four, one is left out
-    three = replace(case, table=made_table(rng, n=3))
-    assert with_fewer(three, rng) is three
-
-
 def _p(**given):
     return dict.fromkeys(CAUSES, 0.0) | given
 
@@ -172,13 +103,6 @@ def _p(**given):
 )
 def test_the_verdict_is_the_likeliest_set_of_causes(p, verdict):
     assert likeliest(joint_probabilities(p)) == verdict
-
-
-def test_a_set_that_was_not_fitted_is_not_named():
-    chances = joint_probabilities(_p(clipping=0.9, beam_modes=0.8, unknown=0.1))
-    assert likeliest(chances) == ("clipping", "beam_modes")
-    assert likeliest(chances, [frozenset({"clipping"})]) == ("clipping",)
-    assert likeliest(chances, []) == ("unknown",)
 
 
 @given(st.dictionaries(st.sampled_from(list(EFFECTS)), st.floats(0.001, 0.999), max_size=6))
@@ -214,13 +138,6 @@ def test_two_causes_as_probable_as_each_other_are_declared_alike():
     one = _p(static_ageing=0.95, critical_torque_scatter=0.1)
     ranked = sorted((n for n in one if n in EFFECTS), key=lambda n: -one[n])
     assert equivalent_pairs(ranked, one, {"torque"}) == ()
-
-
-def test_without_torque_effects_of_the_contact_are_alike():
-    p = _p(velocity_weakening=0.95)
-    ranked = sorted((n for n in p if n in EFFECTS), key=lambda n: -p[n])
-    assert ("frictional_heating", "velocity_weakening") in equivalent_pairs(ranked, p, {"pressure"})
-    assert equivalent_pairs(ranked, p, {"torque", "pressure"}) == ()
 
 
 ALL = {"torque", "acceleration", "pressure", "angle"}

@@ -4,13 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
 
 from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.evidence.channel_summary import path_summary
-from noise.diagnosis.prepare import at_measured_speeds, settled_parts, shortest
+from noise.diagnosis.prepare import (
+    HIGHEST_RATE,
+    LONGEST,
+    at_measured_speeds,
+    bounded,
+    settled_parts,
+    shortest,
+)
 from noise.diagnosis.sensors import converter_step, estimated_noise, with_estimated_sensors
 from noise.diagnosis.starts import start_of
 from sim.acquisition import Acquisition
@@ -116,13 +122,6 @@ def test_a_start_that_leaves_too_little_is_refused_unless_all_would_be():
     assert parts[0].duration == pytest.approx(shortest(RATE), abs=1e-3)
 
 
-@pytest.mark.parametrize("rate", [8e3, 12e3, 16e3, 25.6e3, 30e3, 44.1e3, 48e3, 51.2e3, 96e3])
-def test_what_is_long_enough_has_a_spectrum(rate):
-    sound = np.random.default_rng(0).standard_normal(int(np.ceil(shortest(rate) * rate)))
-    numbers, _ = path_summary(sound, 2.0 * sound, rate, np.empty(0))
-    assert numbers["gain"] == pytest.approx(np.log(2.0), rel=1e-6)
-
-
 @given(off=st.floats(-0.03, 0.03), step=st.sampled_from([0.0, 6e-3]))
 def test_repeats_get_the_mean_speed_of_their_angles_where_the_stated_one_is_off(off, step):
     runs = [turning((1.0 + off) * np.full(24_000, f), step=step) for f in (0.998, 1.002)]
@@ -180,9 +179,32 @@ def test_a_sensor_is_as_noisy_as_all_recordings_are_unless_the_rig_file_states_l
     assert with_estimated_sensors(stated, all_loud)[0].sensors.of("pressure").noise == quiet
 
 
-def test_what_a_rig_file_states_of_a_sensor_stays():
-    stated = Sensor(noise=0.02, full_scale=102.5, bits=12)
-    rig = replace(RIG, sensors=Sensors({"torque": stated}))
-    seen, notes = with_estimated_sensors(rig, [through(stick_slip(60.0), noise=0.005, step=0.01)])
-    assert seen.sensors.of("torque") == stated
-    assert notes == ()
+def _tone(rate, seconds, frequency=1000.0):
+    time = np.arange(round(seconds * rate)) / rate
+    samples = np.sin(2 * np.pi * frequency * time)[np.newaxis]
+    return Recording(samples, rate, (Channel("torque"),))
+
+
+@settings(max_examples=20)
+@given(rate=st.sampled_from([8e3, 30e3, 51.2e3, 65.536e3, 96e3, 192e3]), seconds=st.floats(0.3, 4))
+def test_no_recording_is_longer_or_finer_than_is_looked_at(rate, seconds):
+    before = _tone(rate, seconds)
+    rig, (after,), notes = bounded(RIG, [before])
+    assert after.rate <= HIGHEST_RATE
+    assert after.duration <= LONGEST + 1 / after.rate
+    assert after.duration == pytest.approx(min(before.duration, LONGEST), abs=2 / after.rate)
+    assert len(notes) == (rate > HIGHEST_RATE) + (before.duration > LONGEST)
+    if not notes:
+        assert after is before
+        assert rig is RIG
+
+
+def test_the_noise_of_a_thinned_sensor_is_what_is_left_of_it():
+    rng = np.random.default_rng(0)
+    stated = Sensors({"torque": Sensor(noise=0.3, full_scale=2.0, bits=4)})
+    rounded = 0.25 * np.round(1.2 * rng.standard_normal((1, 192_000)))
+    rig, (kept,), _ = bounded(
+        replace(RIG, sensors=stated), [Recording(rounded, 96e3, (Channel("torque"),))]
+    )
+    assert rig.sensors.of("torque").step == 0.0
+    assert rig.sensors.of("torque").noise == pytest.approx(kept.samples.std(), rel=0.1)

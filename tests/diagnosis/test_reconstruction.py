@@ -10,7 +10,7 @@ import pytest
 
 from models.condition import FIXED
 from noise.diagnosis.evidence.contact_summary import slip_starts
-from noise.diagnosis.evidence.reconstruction import closed_loop, reconstruct
+from noise.diagnosis.evidence.reconstruction import reconstruct
 from sim.acquisition import Acquisition
 from sim.bushing import lumped_bushing
 from sim.run import simulate
@@ -81,13 +81,3 @@ def test_sensitivities_are_what_a_slightly_different_bushing_gives(support, sens
     expected = max(np.abs(slope).max(), 1e-12)
     assert np.abs(slope - given).max() < 1e-3 * expected
     assert given.any() == (sensitivity != "by_clamp" or not math.isinf(support))
-
-
-@pytest.mark.parametrize("n", [3, 1000, 3001])
-def test_a_closed_loop_begins_with_the_signal_and_ends_where_it_began(n):
-    signal = np.random.default_rng(n).normal(size=n).cumsum()
-    closed = closed_loop(signal, 10e3)
-    assert np.array_equal(closed[:n], signal)
-    assert closed[-1] == pytest.approx(signal[0])
-    assert closed.size >= n + 2500
-    assert np.abs(np.diff(closed[n:])).max() < math.pi / 2000 * max(abs(signal[-1] - signal[0]), 1)

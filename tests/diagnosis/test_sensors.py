@@ -8,21 +8,18 @@ import pytest
 
 from models.recording import Channel, Recording
 from models.rig import LawSpec
-from models.rig_file import load_material_rig, load_rig
+from models.rig_file import load_rig
 from models.sensors import Sensor, Sensors
 from noise.cli import main
 from noise.diagnosis.case import read_case
 from noise.diagnosis.causes.verdict import needs_explaining
 from noise.diagnosis.first_answer import unlearned_sensors
 from noise.diagnosis.gap import Gap
-from noise.diagnosis.sensors import estimated_noise, with_estimated_sensors
-from noise.diagnosis.signature import NAMES
 from noise.diagnosis.simulated.model_runs import Model, ModelRuns
 from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from sim.acquisition import Acquisition
 from sim.effects import EFFECTS
-from sim.run import simulate
 from tests.helpers.small_rigs import RATE, RIG, RIG_FILE, SECONDS, at, gap_of_case, run
 
 COARSE = """
@@ -72,16 +69,6 @@ def test_repeats_are_rounded_and_clipped_as_recordings_are():
         steps = one["torque"] / sensor.step
         assert np.array_equal(steps, np.round(steps))
         assert one["torque"].max() == 127 * sensor.step
-
-
-def test_a_run_without_scatter_keeps_the_noise_that_a_file_states():
-    template, loud = run(at(2.0)), 0.4
-    runs = [ModelRuns(rig, EFFECTS, {}) for rig in (RIG, sensed(torque=Sensor(noise=loud)))]
-    quiet, noisy = (r.noise_free_signature(Model(), template, 0) for r in runs)
-    torque = [name.startswith("torque") for name in NAMES]
-    others = [name.startswith(("acceleration", "pressure")) for name in NAMES]
-    assert np.nanmax(noisy[torque] - quiet[torque]) > 1.0
-    assert np.array_equal(noisy[others], quiet[others])
 
 
 @pytest.fixture(scope="module")
@@ -134,17 +121,6 @@ def test_noise_from_recordings_is_found_and_told(tmp_path):
     assert sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
     assert sensors.of("torque").bits == 12
     assert "noise of the sensors (white, RMS), by the recordings: torque 0." in " ".join(case.notes)
-
-
-def test_a_sound_without_pause_tells_no_noise():
-    creak = simulate(
-        load_material_rig("fluorocarbon"), 2.5, interference=0.381e-3, seconds=0.5
-    ).recording
-    assert estimated_noise([creak], "acceleration") is None
-    seen, notes = with_estimated_sensors(RIG, [creak])
-    assert seen.sensors.of("acceleration").noise is None
-    assert seen.sensors.of("angle").noise == pytest.approx(1e-4, rel=0.1)
-    assert any("do not determine it" in note and "acceleration" in note for note in notes)
 
 
 def test_good_sensors_are_those_the_causes_were_learned_with():

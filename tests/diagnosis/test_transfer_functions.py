@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from models.condition import FIXED
-from models.rig_file import load_rig
+from models.condition import FIXED, Condition, KnownCondition
+from models.recording import Channel, Recording
+from models.rig import LawSpec
+from models.rig_file import load_material_rig, load_rig
+from models.transfer_functions.measured import MeasuredResponse
 from models.transfer_functions.transfer_function import TransferFunction
-from noise.diagnosis.simulated.transfer_functions import predict, torque_transfer_functions
+from noise.diagnosis.signature import group_costs, signature
+from noise.diagnosis.simulated.model_runs import Model, ModelRuns
+from noise.diagnosis.simulated.repeats import Scatter, nominal_repeats
+from noise.diagnosis.simulated.transfer_functions import (
+    TransferFunctionCache,
+    predict,
+    shift_clamp_mode,
+    torque_transfer_functions,
+)
+from sim.bushing import lumped_bushing
+from sim.effects import EFFECTS
 from tests.helpers.small_rigs import RIG, RIG_FILE
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of what was not measured
 
 FREQUENCY = np.arange(2.0, 12e3, 2.0)
-
-
-def _table(response):
-    return TransferFunction(
-        FREQUENCY, np.broadcast_to(np.asarray(response, np.complex128), FREQUENCY.shape)
-    )
 
 
 @pytest.fixture
@@ -69,25 +78,6 @@ def test_a_measured_response_is_of_its_own_support_alone(rig_with):
     assert bolted == pytest.approx([7.0, 7.0], rel=1e-3)
 
 
-def test_a_transfer_function_turns_the_phase_as_the_response_says():
-    rate, n = 20e3, 8000
-    time = np.arange(n) / rate
-    torque = np.sin(2 * np.pi * 400.0 * time)
-    heard = predict(torque, rate, _table(2.0j))  # i: a quarter of a period ahead
-    expected = 2.0 * np.cos(2 * np.pi * 400.0 * time)
-    assert np.abs(heard - expected)[2000:-2000].max() < 0.03
-
-
-def test_a_delay_in_the_response_delays_the_sound():
-    rate = 20e3
-    torque = np.zeros(6000)
-    torque[3000:3003] = 1.0
-    delayed = TransferFunction(FREQUENCY, np.exp(-2j * np.pi * FREQUENCY * 2e-3))
-    heard = predict(torque, rate, delayed)
-    assert abs(int(np.argmax(heard)) - (3001 + 40)) <= 1
-    assert np.abs(heard[:3030]).max() < 0.1 * heard.max()
-
-
 def test_the_simulator_sends_its_torque_through_the_same_transfer_functions():
     from sim.acquisition import Acquisition
     from sim.run import simulate
@@ -102,3 +92,104 @@ def test_the_simulator_sends_its_torque_through_the_same_transfer_functions():
         predicted = predict(recording["torque"], recording.rate, found[kind])
         left = (predicted - recording[kind])[inside]
         assert np.std(left) < 0.1 * np.std(recording[kind][inside]), kind
+
+
+PLAIN = load_material_rig("fluorocarbon-thesis")
+LINES = np.arange(10.0, 5000.1, 2.5)
+
+
+def _mode(f, at=259.0, damping=0.02):
+    x = f / at
+    return -(x**2) / (1.0 - x**2 + 2j * damping * x)
+
+
+def _rig(response):
+    """A rig whose both responses were measured."""
+    frf = TransferFunction(LINES, response.astype(complex), None, "N m", "m/s^2")
+    entry = MeasuredResponse(2214.0, frf, replace(frf, output_unit="Pa"))
+    return replace(PLAIN, measured=(entry,))
+
+
+def _measured(response):
+    return torque_transfer_functions(_rig(response), 0.279e-3, 2214.0)["acceleration"]
+
+
+def test_between_its_lines_a_resonance_is_what_it_is():
+    f = np.arange(240.0, 280.0, 0.3)
+    straight = np.abs(TransferFunction(LINES, _mode(LINES)).at(f) - _mode(f)).max()
+    assert np.abs(_measured(_mode(LINES)).at(f) - _mode(f)).max() < 0.2 * straight
+
+
+def test_a_measured_transfer_function_does_not_echo_after_one_over_its_spacing():
+    torque = np.zeros(24_000)
+    torque[2400] = 1.0
+    rung = predict(torque, 24e3, _measured(_mode(LINES)))
+    after = np.abs(rung[2400 + 8400 : 2400 + 12_000]).max()  # 0.35 to 0.5 s later
+    assert after < 1e-3 * np.abs(rung).max()
+
+
+def test_a_lighter_clamp_rings_higher():
+    nominal = lumped_bushing(PLAIN, 0.279e-3, 2214.0)
+    lighter = replace(nominal, clamp_inertia=0.9 * nominal.clamp_inertia)
+    f = np.arange(150.0, 400.0, 0.1)
+    s = 2j * np.pi * f
+    clamp = 1.0 / (
+        nominal.support_stiffness + nominal.support_damping * s + nominal.clamp_inertia * s**2
+    )
+    before, after = (
+        f[np.argmax(np.abs(w.response))]
+        for w in (
+            TransferFunction(f, clamp),
+            shift_clamp_mode(TransferFunction(f, clamp), nominal, lighter),
+        )
+    )
+    assert after / before == pytest.approx(0.9**-0.5, rel=1e-3)
+
+
+def test_a_quiet_steady_rig_is_quiet_from_start_to_end_of_a_recording():
+    at = Condition(speed=8.0, interference=0.279e-3, support_stiffness=2214.0)
+    rig = _rig(_mode(LINES))
+    template = Recording(np.zeros((1, 15_000)), 30e3, (Channel("torque"),), at)
+    (run,) = nominal_repeats(template, rig, TransferFunctionCache(rig), (1,))
+    assert np.abs(run["acceleration"]).max() < 0.5
+
+
+SUPPORT = 3745.0
+AT = KnownCondition(2.0, 0.279e-3, SUPPORT)
+RUN = Recording(
+    np.zeros((3, 9000)), 30e3, tuple(map(Channel, ("torque", "acceleration", "pressure"))), AT
+)
+HAMMERED = np.arange(40.0, 10_001.0, 5.0)
+NONE = Scatter(0.0, 0.0, 0.0, 0.0)
+
+
+def _poorly_measured():
+    """A rig of whose responses a hammer test tells a tenth wrong at every line."""
+    rng = np.random.default_rng(0)
+    responses = {}
+    for name, h in torque_transfer_functions(PLAIN, 0.279e-3, SUPPORT).items():
+        error = 0.1 * (rng.standard_normal((2, HAMMERED.size)) * np.abs(h.at(HAMMERED)))
+        size = h.at(HAMMERED) + error[0] + 1j * error[1]
+        responses[f"torque_to_{name}"] = TransferFunction(
+            HAMMERED, size, None, "N m", h.output_unit
+        )
+    return replace(PLAIN, measured=(MeasuredResponse(SUPPORT, **responses),))
+
+
+@pytest.mark.parametrize("rig", [PLAIN, _poorly_measured()], ids=["modelled", "poorly measured"])
+def test_a_model_without_effects_is_heard_as_nominal_repeats_are(rig):
+    nominal = nominal_repeats(RUN, rig, TransferFunctionCache(rig), [1], NONE, EFFECTS)[0]
+    model = ModelRuns(rig, EFFECTS, {}).simulated(Model(), RUN, 1, NONE)
+    away = (signature(nominal) - signature(model)) / 0.03
+    assert np.nanmax(group_costs(away)) < 0.25
+
+
+def test_what_effects_on_the_structure_change_is_added_to_what_was_measured():
+    runs = ModelRuns(_poorly_measured(), EFFECTS, {})
+    room = LawSpec("room_reflections", {"amount": 1.0})
+    plain, echoing = (
+        runs.simulated(Model(effects=effects), RUN, 1, NONE) for effects in ((), (room,))
+    )
+    assert np.array_equal(plain["torque"], echoing["torque"])
+    assert np.array_equal(plain["acceleration"], echoing["acceleration"])
+    assert np.std(echoing["pressure"] - plain["pressure"]) > 0.1 * np.std(plain["pressure"])

@@ -11,7 +11,6 @@ from noise.diagnosis.outcome import Agreement
 from noise.diagnosis.sentences import (
     AGREES,
     agreement_sentence,
-    answer,
     fit_sentence,
     headline,
     location_sentence,
@@ -20,16 +19,11 @@ from noise.diagnosis.sentences import (
 )
 from noise.diagnosis.words import CAUSES, percent
 from sim.effects import EFFECTS
-from tests.helpers.made_diagnoses import SLIGHT, none, one_effect, pressure_alone, unknown
+from tests.helpers.made_diagnoses import SLIGHT, none, one_effect, unknown
 
 
 def test_every_shipped_effect_has_a_description_and_nothing_else_has_one():
     assert set(CAUSES) == set(EFFECTS) | {"none", "parameters", "unknown"}
-
-
-def test_no_gap_is_said_to_need_no_explanation():
-    assert headline(none()) == "No gap"
-    assert location_sentence(none()) == ""
 
 
 def test_one_effect_is_named_with_what_it_does_and_how_likely_it_is():
@@ -76,11 +70,6 @@ def test_one_of_five_intervals_that_just_misses_one_is_no_difference():
     agreeing = {f"agreeing_{i}": (0.94, 1.06) for i in range(4)}
     assert parameters_off(agreeing | {"elastomer_inertia": (0.871, 0.998)}) == {}
     assert list(parameters_off(agreeing | {"damping": (1.12, 1.16)})) == ["damping"]
-
-
-def test_a_quick_answer_says_that_nothing_was_fitted():
-    assert answer(pressure_alone())[-1].startswith("Nothing has been fitted")
-    assert not any("Nothing has been fitted" in text for text in answer(one_effect()))
 
 
 @given(st.lists(st.floats(0.3, 300.0), min_size=1, max_size=6), st.booleans())

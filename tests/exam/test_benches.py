@@ -1,7 +1,6 @@
 """Kinds of bench: nothing is the matter on them, and what they differ by is stated or seen."""
 
 import tomllib
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +9,10 @@ import pytest
 from models.rig_file import load_rig
 from noise.diagnosis.case import read_case
 from noise.recordings.files import read_recording
-from tests.blind.benches import BITS, KINDS, NOISE, Bench, draw_bench
-from tests.blind.cases import STARTS, rig_text, run_case, write_case
-from tests.blind.design import BLOCKS, draw_design
-from tests.blind.effects import DEVELOPMENT, FORMS, SEALED
+from tests.blind.benches import BITS, KINDS, NOISE, Bench
+from tests.blind.cases import rig_text, run_case, write_case
+from tests.blind.design import draw_design
+from tests.blind.effects import DEVELOPMENT, FORMS
 from tests.blind.gap import gaps_of, null_gap
 from tests.blind.laws import CONSTANT, LAWS, draw_law
 from tests.helpers.small_rigs import gap_of_case
@@ -81,35 +80,3 @@ def test_a_converter_leaves_only_its_steps():
     for x, name in zip(samples.astype(float), NOISE, strict=True):
         steps = x / bench.step_of(name)
         assert steps == pytest.approx(np.round(steps), abs=1e-3)
-
-
-@pytest.mark.parametrize("name", sorted(STARTS))
-def test_every_start_ends_at_the_stated_speed(name):
-    for seed in range(20):
-        course = STARTS[name](np.random.default_rng(seed), 0.5)
-        assert course(np.array([0.5]))[0] == pytest.approx(1.0, abs=0.03)
-        assert (course(np.linspace(0.0, 0.5, 99)) >= 0.0).all()
-
-
-def test_a_block_of_a_kind_holds_its_quotas_sealed_or_not():
-    for kind in ("quiet", "laws"):
-        for block, kept_for, least in (
-            ("kind", DEVELOPMENT, {"none": 20, "one": 16, "pair": 8, "stranger": 6}),
-            ("sealed kind", SEALED, {"none": 75, "one": 60, "pair": 30, "stranger": 20}),
-        ):
-            designs = [draw_design(8, i, kept_for, block, kind) for i in range(len(BLOCKS[block]))]
-            counts = Counter(d.kind for d in designs)
-            assert all(counts[name] >= n for name, n in least.items())
-            for design in designs:
-                names = {form.effect for form, _ in design.forms}
-                assert not names & set(design.bench.without)
-                assert {form.kept_for for form, _ in design.forms} <= {kept_for}
-
-
-def test_kinds_of_bench_share_no_chance_and_sizes_reach_a_factor_of_three():
-    inertias = {draw_design(1, 0, DEVELOPMENT, "kind", kind).inertias for kind in KINDS}
-    assert len(inertias) == len(KINDS)
-    rng = np.random.default_rng(0)
-    factors = np.array([list(draw_bench("sizes", rng).sizes.values()) for _ in range(300)])
-    assert factors.max() == pytest.approx(3.0, rel=0.05)
-    assert factors.min() == pytest.approx(1.0 / 3.0, rel=0.05)

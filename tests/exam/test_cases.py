@@ -9,8 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from models.rig_file import load_rig
-from noise.recordings.files import read_recording
 from tests.blind.benches import KINDS
 from tests.blind.cases import (
     Case,
@@ -85,21 +83,6 @@ def _bytes(folder):
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
-def test_a_user_can_read_what_is_handed_out(tmp_path):
-    case = run_case(_design())
-    write_case(case, tmp_path / "case", None)
-    rig = load_rig(tmp_path / "case" / "rig.toml")
-    assert rig.friction.name == "coulomb"
-    assert not rig.effects
-    assert len(rig.measured) == 1
-    recording = read_recording(tmp_path / "case" / "run02.wav")
-    assert recording.samples.astype(np.float32).tobytes() == case.recordings[1].tobytes()
-    assert recording.condition.speed == FAST.speed
-    assert rig.fit(recording.condition.interference).kinetic_torque == pytest.approx(
-        case.design.nominal(FAST).kinetic_torque, rel=1e-5
-    )
-
-
 @pytest.mark.parametrize("kept_for", [DEVELOPMENT, SEALED])
 def test_classes_have_their_shares_and_causes_come_evenly(kept_for):
     designs = [draw_design(7, i, kept_for) for i in range(840)]
@@ -117,30 +100,6 @@ def test_classes_have_their_shares_and_causes_come_evenly(kept_for):
         assert 4 <= len(design.conditions) <= 9
         repeats = [n for n in Counter(design.conditions).values() if n > 1]
         assert repeats == [2, 2]
-
-
-def test_a_rig_never_breaks_loose_below_what_it_slides_at():
-    for i in range(400):
-        design = draw_design(11, i, SEALED)
-        for k, condition in enumerate(design.conditions):
-            true = design.true(condition, k)
-            assert true.critical_torque > true.kinetic_torque
-
-
-def test_nothing_but_the_samples_knows_the_class():
-    from sklearn.ensemble import RandomForestClassifier
-    from sklearn.model_selection import cross_val_score
-
-    designs = [draw_design(13, i, SEALED) for i in range(600)]
-    seen = np.array([
-        [d.index, d.rate, d.seconds, len(d.conditions), len({c.support for c in d.conditions}),
-         *np.mean([[c.speed, c.interference_mm, c.support] for c in d.conditions], axis=0),
-         d.conditions[0].speed, *d.inertias, d.fits[0.279][0], d.damping[2214.0]]
-        for d in designs
-    ])  # fmt: skip
-    kinds = np.array([d.kind for d in designs])
-    guess = cross_val_score(RandomForestClassifier(100, random_state=0), seen, kinds, cv=5).mean()
-    assert guess < 0.4 + 3.0 * np.sqrt(0.4 * 0.6 / 600)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -5,22 +5,14 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from models.rig_file import load_material_rig, load_rig, measured_responses
+from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
-from sim.acquisition import Acquisition
 from sim.motion import simulate_motion
-from sim.run import simulate
 from sim.shaft import ConstantSpeed
 from tests.blind import kernel
 from tests.blind.cases import (
-    NOISE,
-    Case,
-    responses_of,
     run_case,
-    structures_of,
-    support_name,
     write_case,
-    write_npz,
 )
 from tests.blind.design import Condition, Design, draw_design
 from tests.blind.effects import DEVELOPMENT
@@ -64,16 +56,6 @@ def _energy(p, s):
     )
 
 
-def test_the_work_of_friction_is_what_is_stored_and_what_the_dampers_take():
-    p = Parameters()
-    s = turn(plain(p, 2.0, rate=RATE, seconds=0.3, settling=0.0)).states
-    put_in = s[:, kernel.FRICTION] * s[:, kernel.V1]
-    lost = 0.5 * p.damping * ((s[:, kernel.V1] - s[:, kernel.V2]) ** 2 + s[:, kernel.V2] ** 2)
-    change = np.trapezoid(put_in - lost, dx=1.0 / RATE)
-    stored = _energy(p, s)
-    assert change == pytest.approx(stored[-1] - stored[0], abs=0.01 * np.trapezoid(put_in) / RATE)
-
-
 def test_steady_sliding_carries_the_kinetic_torque():
     s = turn(plain(Parameters(), 12.0, rate=RATE, seconds=0.3, settling=0.5))
     assert s.torque == pytest.approx(8.0, abs=1e-4)
@@ -110,30 +92,6 @@ def test_both_rigs_agree_without_effects(fit, support, speed):
     assert _slip_frequency(mine.torque) == pytest.approx(_slip_frequency(theirs), rel=5e-3)
     for low in (100.0, 200.0, 400.0, 800.0, 1600.0):
         assert _band(mine.torque, low) == pytest.approx(_band(theirs, low), abs=0.3)
-
-
-@pytest.mark.parametrize(("speed", "subharmonic"), [(1.6, False), (1.8, False), (2.0, True)])
-def test_both_rigs_slip_alternately_at_the_same_speeds(speed, subharmonic):
-    """Where slips alternate, the octave below the slips' is loud; a little faster it is not."""
-    rig = load_material_rig("fluorocarbon-thesis")
-    at = rig.fit(0.279e-3)
-    p = Parameters(
-        rig.elastomer_inertia, rig.clamp_inertia, at.elastomer_stiffness, 2214.0,
-        at.damping[2214.0], at.critical_torque, at.kinetic_torque,
-    )  # fmt: skip
-    mine = turn(plain(p, speed, rate=RATE, seconds=0.5, settling=0.35)).torque
-    theirs = simulate_motion(
-        rig, ConstantSpeed(speed), interference=0.279e-3, support_stiffness=2214.0, seconds=0.85,
-        rate=RATE, rng=np.random.default_rng(0),
-    ).torque[31_500:]  # fmt: skip
-    shares = [_band(x, 44.0) - 10.0 * np.log10(_power(x)) for x in (mine, theirs)]
-    assert [share > -20.0 for share in shares] == [subharmonic] * 2
-    if subharmonic:
-        assert shares[0] == pytest.approx(shares[1], abs=0.5)
-
-
-def _power(torque):
-    return np.sum(np.abs(np.fft.rfft((torque - torque.mean()) * np.hanning(torque.size))) ** 2)
 
 
 class _Exact(Design):
@@ -173,33 +131,6 @@ def _band(torque, low):
     return 10.0 * np.log10(power[(f >= low) & (f < 2 * low)].sum())
 
 
-def test_measured_responses_scatter_about_the_exact_ones_as_their_coherence_says():
-    p, structure = Parameters(), draw_structure(np.random.default_rng(3), 2214.0)
-    for found, exact in zip(
-        structure.measured(p, np.random.default_rng(4)),
-        structure.exact(p, np.arange(10.0, 10_001.0, 2.5)),
-        strict=True,
-    ):
-        error = np.abs(found["response"] - exact) / np.abs(exact)
-        assert 1e-3 < np.median(error) < 0.05
-        assert np.median(error[found["coherence"] < 0.9]) > np.median(error)
-
-
-@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
-@pytest.mark.parametrize("support", [2214.0, 3745.0, FIXED])
-def test_measured_responses_serve_a_rig_file_whatever_was_drawn(support, tmp_path):
-    keys = ("torque_to_acceleration", "torque_to_pressure")
-    for seed in range(12):
-        structure = draw_structure(np.random.default_rng(seed), support)
-        p = Parameters(support_stiffness=support)
-        entry = {"support_stiffness_Nm_rad": support_name(support) if support < 0 else support}
-        for key, found in zip(keys, structure.measured(p, np.random.default_rng(1)), strict=True):
-            entry[key] = f"{key}.npz"
-            write_npz(tmp_path / entry[key], found)
-        (read,) = measured_responses([entry], tmp_path, "rig file")
-        assert read.torque_to_pressure.output_unit == "Pa"
-
-
 def test_acceleration_of_a_run_is_its_torque_through_the_exact_response():
     p, structure = Parameters(), draw_structure(np.random.default_rng(3), 2214.0)
     turned = turn(plain(p, 2.0, rate=RATE, seconds=0.5, settling=0.0))
@@ -209,26 +140,3 @@ def test_acceleration_of_a_run_is_its_torque_through_the_exact_response():
         through = filtered(torque, RATE, lambda f, i=i: structure.exact(p, f)[i], pad=torque.size)
         late = slice(9000, None)
         assert np.std(whole[name][late] - through[late]) < 0.03 * np.std(through[late])
-
-
-@pytest.mark.filterwarnings("ignore:.*is missing from the simulated")
-def test_the_bolted_clamp_sounds_as_sim_has_it_where_slips_leave_it_alone(tmp_path):
-    design = draw_design(77, 1, DEVELOPMENT)
-    condition = next(c for c in design.conditions if c.support == FIXED)
-    structure = structures_of(design)[FIXED]
-    silence = (np.zeros((4, 2), np.float32),) * len(design.conditions)
-    responses = responses_of(design, structures_of(design))
-    write_case(Case(design, silence, responses, {}), tmp_path / "case", None)
-    run = simulate(
-        load_rig(tmp_path / "case" / "rig.toml"), condition.speed,
-        interference=1e-3 * condition.interference_mm, support_stiffness=np.inf,
-        acquisition=Acquisition(rate=RATE, noise={}),
-    )  # fmt: skip
-    setup = plain(design.nominal(condition), condition.speed, rate=RATE, seconds=1.0, settling=0.35)
-    turned = turn(setup)
-    mine = structure.respond(turned)["pressure"][turned.settle :]
-    theirs = run.recording.samples[run.recording.channel_names.index("pressure")]
-    noise = NOISE["pressure"] * np.random.default_rng(1).standard_normal(mine.size)
-    assert _slip_frequency(turned.torque) > 250.0
-    for low in (125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0):
-        assert _band(mine + noise, low) == pytest.approx(_band(theirs + noise, low), abs=1.0)

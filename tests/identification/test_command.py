@@ -8,7 +8,6 @@ from contextlib import redirect_stderr
 import numpy as np
 import pytest
 
-import noise
 from models.rig_file import load_rig
 from noise.cli import main
 from noise.identification import law_fit
@@ -68,12 +67,6 @@ def test_it_prints_the_law_and_the_numbers_of_the_rig_file(answered):
         assert f"{words} {value:.4g} (" in last
 
 
-def test_it_writes_a_rig_file_that_loads(answered):
-    rig = load_rig(answered[1] / "rig.toml")
-    assert len(rig.fits) == 1
-    assert rig.fits[0].critical_torque >= rig.fits[0].kinetic_torque > 0.0
-
-
 def test_speeds_are_written_as_they_were_logged(folder, answered):
     sidecars = [json.loads(path.read_text()) for path in folder.glob("*.json")]
     logged = {sidecar["conditions"].get("speed_rad_s") for sidecar in sidecars}
@@ -121,18 +114,6 @@ def test_sound_alone_is_told_what_is_needed(tmp_path, capsys):
     )
     assert main(["identify", str(tmp_path)]) == 1
     assert "has no channel of torque" in capsys.readouterr().err
-
-
-def test_an_empty_folder_is_an_unusable_call(tmp_path):
-    assert main(["identify", str(tmp_path)]) == 2
-
-
-@pytest.mark.slow
-def test_a_notebook_gets_the_same(folder):
-    identified = noise.identify(folder, folder / "known.toml")
-    assert identified.law
-    stiffness = next(one for one in identified.numbers if one.name == "elastomer_stiffness")
-    assert stiffness.n_recordings == 3
 
 
 @pytest.mark.parametrize(

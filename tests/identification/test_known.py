@@ -38,13 +38,6 @@ def test_an_identified_rig_keeps_the_structure_of_the_known_one(tmp_path):
     assert again.fastest_fitted == 3.0
 
 
-def test_a_change_states_what_it_changes(tmp_path):
-    (tmp_path / "bench.toml").write_text(INERTIAS)
-    changed = known_beforehand(tmp_path / "bench.toml", {"clamp_inertia": "x2"})
-    assert changed.known.clamp_inertia == 1.6e-3
-    assert changed.inertias_stated
-
-
 @pytest.mark.parametrize(("heat", "reference"), [((20.0, None, 30.0), 25.0), ((None,), 23.0)])
 def test_a_rig_depends_on_temperature_from_that_of_its_recordings_on(heat, reference):
     recordings = [
