@@ -54,16 +54,16 @@ def _identification(options: Namespace, progress: Steps) -> tuple[Identification
     from noise.identification.measured import known_beforehand, read_measurements
 
     beforehand = known_beforehand(options.rig, change_table(options.change or ()))
-    measurements = read_measurements(options.data)
-    for name, reason in measurements.refused:
+    measured, refused = read_measurements(options.data)
+    for name, reason in refused:
         say(f"{name}: {reason}")
-    if not measurements.used:
+    if not measured:
         say("no recording that a rig can be identified from; nothing is written")
         return None, True
-    progress.expect(len(measurements.used) + 2 * len(CANDIDATES) + 2)
+    progress.expect(len(measured) + 2 * len(CANDIDATES) + 2)
     try:
-        identification = identify_rig(measurements, beforehand, progress=progress)
+        identification = identify_rig(measured, refused, beforehand, progress=progress)
     except NothingSlipsError as error:
-        say(f"{', '.join(one.name for one in measurements.used)}: {error}; nothing is written")
+        say(f"{', '.join(one.name for one in measured)}: {error}; nothing is written")
         return None, True
-    return identification, bool(measurements.refused)
+    return identification, bool(refused)

@@ -47,7 +47,6 @@ def improved_sentence(improvement: Improvement) -> str:
 
 
 NAME = "improved.toml"
-_WIDTH = 96
 
 
 def improved_text(
@@ -97,25 +96,22 @@ def improved_text(
 
 
 def _head(improvement: Improvement) -> list[str]:
-    held_out = set(improvement.held_out) - set(improvement.fitted_to)
+    unseen = set(improvement.held_out) - set(improvement.fitted_to)
     where = f"On {', '.join(improvement.held_out)}, which this fit did not use,"
     paragraphs = [
         f"Improved by a diagnosis. Fitted to {', '.join(improvement.fitted_to)}.",
-        f"{where if held_out else 'On what it was fitted to'} the gap fell from "
-        f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g}; 1 is what repeats of one "
-        "run differ by.",
+        f"{where if unseen else 'On what it was fitted to'} the gap fell from "
+        f"{improvement.gap_before:.2g} to {improvement.gap_after:.2g}; 1 is that of repeats.",
         "[tolerances] has the relative standard deviation to which each number is known, for this "
         "fit and these forms of effects. It is no scatter of built parts.",
         "Do not trust it at speeds, interferences or supports beyond those recorded, or for the "
         "name of the cause: another effect may do the same here.",
     ]
     if improvement.undetermined:
-        paragraphs.append(
-            f"These recordings hardly determine {', '.join(improvement.undetermined)}."
-        )
+        paragraphs.append(f"Hardly determined: {', '.join(improvement.undetermined)}.")
     if own := [spec.name for spec in improvement.rig.effects if spec.name not in EFFECTS]:
         paragraphs.append(f"It needs --effects FILE.py with {', '.join(own)}.")
-    return [line for paragraph in paragraphs for line in wrap(paragraph, _WIDTH)]
+    return [line for paragraph in paragraphs for line in wrap(paragraph, 96)]
 
 
 def check_base(rig: Path, folder: Path) -> None:

@@ -28,7 +28,7 @@ from noise.identification.law_fit import MARGIN, LawFit, choose_law
 from noise.identification.law_model import CANDIDATES, LOCAL, Candidate, subjects_of
 from noise.identification.measured import (
     Beforehand,
-    Measurements,
+    Measured,
     known_beforehand,
     read_measurements,
 )
@@ -49,7 +49,8 @@ class NothingSlipsError(ParameterError):
 
 
 def identify_rig(
-    measurements: Measurements,
+    measured: Sequence[Measured],
+    refused: Sequence[tuple[str, str]],
     beforehand: Beforehand,
     *,
     progress: Callable[[str], None] | None = None,
@@ -58,7 +59,9 @@ def identify_rig(
 
     Parameters
     ----------
-    measurements : Measurements
+    measured : sequence of Measured
+    refused : sequence of (str, str)
+        Name and reason of each recording that is left out.
     beforehand : Beforehand
         Prior knowledge of the rig.
     progress : callable, optional
@@ -74,14 +77,14 @@ def identify_rig(
         No recording can be used, or nothing slips in any of them.
     """
     started = time.perf_counter()
-    if not measurements.used:
-        reasons = "; ".join(f"{name}: {reason}" for name, reason in measurements.refused)
+    if not measured:
+        reasons = "; ".join(f"{name}: {reason}" for name, reason in refused)
         raise ParameterError(f"no recording that a rig can be identified from: {reasons}")
-    if units := unit_findings([one.recording for one in measurements.used], beforehand.rig):
+    if units := unit_findings([one.recording for one in measured], beforehand.rig):
         raise ParameterError(f"{'; '.join(units)}; put units right in the sidecars")
     tell = progress or (lambda _text: None)
     recordings = []
-    for one in measurements.used:
+    for one in measured:
         alone = fit_bushing(one, beforehand.known)
         recordings.append(RecordingFit(one, alone, torque_levels(alone)))
         levels = recordings[-1].levels
@@ -123,7 +126,7 @@ def identify_rig(
             *remarks(rig),
             *_notes(model.candidate, scores, held_out),
         ),
-        refused=measurements.refused,
+        refused=tuple(refused),
         held_out=held_out,
         margin=MARGIN,
         seconds=time.perf_counter() - started,
@@ -161,7 +164,7 @@ def identify(
     """
     paths = [Path(data)] if isinstance(data, str | Path) else [Path(path) for path in data]
     beforehand = known_beforehand(None if rig is None else Path(rig))
-    return identify_rig(read_measurements(paths), beforehand)
+    return identify_rig(*read_measurements(paths), beforehand)
 
 
 def result_lines(result: Identification) -> list[str]:

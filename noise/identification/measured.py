@@ -173,23 +173,7 @@ class Measured:
         return self.recording.rate
 
 
-@dataclass(frozen=True, eq=False)
-class Measurements:
-    """Recordings of a folder by use.
-
-    Parameters
-    ----------
-    used : tuple of Measured
-        Recordings of rotation.
-    refused : tuple of (str, str)
-        Name and reason of each recording that is left out.
-    """
-
-    used: tuple[Measured, ...]
-    refused: tuple[tuple[str, str], ...]
-
-
-def read_measurements(paths: Sequence[Path]) -> Measurements:
+def read_measurements(paths: Sequence[Path]) -> tuple[list[Measured], list[tuple[str, str]]]:
     """Read the recordings in files and folders.
 
     Parameters
@@ -198,8 +182,10 @@ def read_measurements(paths: Sequence[Path]) -> Measurements:
 
     Returns
     -------
-    Measurements
-        Unusable recordings are in ``refused``.
+    used : list of Measured
+        Recordings of rotation.
+    refused : list of (str, str)
+        Name and reason of each recording that is left out.
 
     Raises
     ------
@@ -214,7 +200,7 @@ def read_measurements(paths: Sequence[Path]) -> Measurements:
             refused.append((name, str(error)))
     if not (used or refused):
         raise ParameterError(f"{', '.join(str(path) for path in paths)}: no recording")
-    return Measurements(tuple(used), tuple(refused))
+    return used, refused
 
 
 def measured(recording: Recording, name: str) -> Measured:

@@ -151,21 +151,6 @@ def test_an_effect_of_the_users_own_takes_the_verdict_when_it_is_the_cause(
     assert told["location"]["stage"] == "measurement"
 
 
-def test_where_nothing_is_to_explain_chances_are_of_the_users_own_effects_and_say_so(
-    plain, tmp_path, capsys
-):
-    mine = tmp_path / "rectifier.py"
-    mine.write_text(RECTIFIER)
-    data, rig = write_case(tmp_path, plain)
-    told = _told(capsys, data, "--rig", rig, "--effects", mine)
-    assert told["verdict"] == []
-    chances = {name: p for name, p in told["probabilities"].items() if p}
-    assert set(chances) == {"none", "rectifier"}
-    assert sum(chances.values()) == pytest.approx(1.0, abs=1e-3)
-    assert told["effects"][0]["probability"] == chances["rectifier"]
-    assert any("the probabilities are of rectifier and of no gap" in n for n in told["notes"])
-
-
 def test_numbers_that_are_none_become_null():
     strange = replace(one_effect(), gap=math.nan, p_value=math.inf)
     told = json.loads(json.dumps(as_json(strange), allow_nan=False))

@@ -190,5 +190,5 @@ def test_a_cause_that_cannot_be_simulated_is_left_out_and_ends_no_diagnosis(fitt
     fits, noted = fitted(chances({film: 0.6, PARTIAL: 0.3}, unknown=0.04), {PARTIAL: 1.0})
     assert noted == [PARTIAL]
     assert fits.impossible == {film: "steps of 1e-07 s cannot follow"}
-    (note,) = fit_notes(SimpleNamespace(fits=fits, among=(), verdict=()))
+    (note,) = fit_notes(SimpleNamespace(fits=fits, verdict=()))
     assert note.startswith("transfer_film was not fitted")

@@ -234,7 +234,7 @@ def test_a_transfer_is_found_beneath_noise_and_not_where_there_was_nothing():
     x = np.fft.irfft(spectrum * _low_pass().at(np.fft.rfftfreq(16000, 1.0 / rate)))
     r = 0.5 * np.roll(x, 8)
     pairs = [(x, r + 0.02 * rng.standard_normal(x.size))]
-    found = wiener_estimate(pairs, rate, 0.02, noise=lambda f: [np.full(f.size, 0.02**2)])
+    found = wiener_estimate(pairs, rate, 0.02, noise=0.02)
     assert abs(found.at(np.array([300.0]))[0]) == pytest.approx(0.5, rel=0.1)
     assert abs(found.at(np.array([3000.0]))[0]) < 0.2
 

@@ -199,8 +199,6 @@ class Judged:
     probabilities : mapping of str to float
         Of the causes, as the hypotheses have them [-].
     verdict : tuple of str
-    among : tuple of str
-        Effects that alone were weighed against nothing being the matter; empty where all were.
     """
 
     comparison: CaseComparison
@@ -209,7 +207,6 @@ class Judged:
     hypotheses: Mapping[Hypothesis, float]
     probabilities: Mapping[str, float]
     verdict: tuple[str, ...]
-    among: tuple[str, ...] = ()
 
 
 def judge(
@@ -222,8 +219,7 @@ def judge(
 ) -> Judged:
     """Fit the likeliest hypotheses of a case and return the updated verdict.
 
-    Where the first answer finds nothing to explain, the user's own effects alone are fitted, of
-    which it knows nothing; all probabilities are then of these and of nothing being the matter.
+    Where the first answer finds nothing to explain, nothing is fitted.
 
     Parameters
     ----------
@@ -235,17 +231,15 @@ def judge(
     tell : callable
         Told what is being done.
     """
-    comparison = first.comparison
+    comparison, whole = first.comparison, range(len(case.recordings))
+    before = comparison.squared(Model(), whole)
     conditions = [recording.condition for recording in case.recordings]
+    fitted_to, held = map(tuple, split(conditions, np.sqrt(before).tolist()))
+    if not first.verdict:
+        return Judged(comparison, held, None, first.hypotheses, first.probabilities, ())
     known = known_effects(case.rig, library)
     always = [name for name in library if name not in EFFECTS and name not in known]
-    if first.verdict:
-        always += [spec.name for spec in irregular_effects(case.rig, library)]
-    whole = range(len(case.recordings))
-    before = comparison.squared(Model(), whole)
-    fitted_to, held = map(tuple, split(conditions, np.sqrt(before).tolist()))
-    if not first.verdict and not always:
-        return Judged(comparison, held, None, first.hypotheses, first.probabilities, ())
+    always += [spec.name for spec in irregular_effects(case.rig, library)]
     tell("recalibrating the parameters")
     alone = fit_parameters(comparison, fitted_to)
     recalibrated = comparison.squared(alone.model, whole)
@@ -253,8 +247,6 @@ def judge(
     prior = normalised(
         dict(first.hypotheses) | {h: max(p, first.hypotheses.get(h, 0.0)) for h, p in least.items()}
     )
-    if not first.verdict:  # what the posterior knows of is not there
-        prior = normalised({h: p for h, p in prior.items() if not h or h <= set(always)})
     fits = CaseFits(
         comparison, fitted_to, held, alone, before, recalibrated, unlearned=frozenset(always)
     )
@@ -264,17 +256,14 @@ def judge(
 
     fits = fit_hypotheses(fits, prior, left_by, seed, tell)
     hypotheses = settled(updated(prior, fits), fits)
-    if not first.verdict:  # what closes nothing then speaks for nothing being the matter
-        hypotheses = normalised({h: p for h, p in hypotheses.items() if h in prior})
     verdict = likeliest(hypotheses, [h for h in fits.of if fits.closes(h)])
     single = marginals(hypotheses)
     probabilities = {n: single.get(n, 0.0) for n in {**first.probabilities, **single}}
-    among = () if first.verdict else tuple(always)
-    return Judged(comparison, held, fits, hypotheses, probabilities, verdict, among)
+    return Judged(comparison, held, fits, hypotheses, probabilities, verdict)
 
 
 def fit_notes(judged: Judged) -> list[str]:
-    """Return notes on the probabilities, on partial fits and on effects that were not fitted.
+    """Return notes on partial fits and on effects that were not fitted.
 
     Parameters
     ----------
@@ -285,31 +274,27 @@ def fit_notes(judged: Judged) -> list[str]:
     list of str
         One line each.
     """
+    fits = judged.fits
+    if fits is None:
+        return []
     notes = []
-    if judged.among:
+    if rms(fits.held_out(fits.before)) < 1.0 + CLOSABLE <= rms(fits.before[[*fits.fitted_to]]):
         notes.append(
-            "among the causes that the program brings there is nothing to explain: the "
-            f"probabilities are of {joined(judged.among)} and of no gap, as if there were no other"
+            "what was held out hardly deviates, so that no fit could be tried on a deviation that "
+            "it had not seen: record the condition that deviates once more"
         )
-    if judged.fits is not None:
-        fits = judged.fits
-        if rms(fits.held_out(fits.before)) < 1.0 + CLOSABLE <= rms(fits.before[[*fits.fitted_to]]):
-            notes.append(
-                "what was held out hardly deviates, so that no fit could be tried on a deviation "
-                "that it had not seen: record the condition that deviates once more"
-            )
-        fit = fits.of.get(frozenset(judged.verdict))
-        if fit is not None and fit.share < 1.0:
-            notes.append(
-                f"{joined(fit.names)} as fitted overshoots in the recordings held out: "
-                f"{fit.share:.0%} of it is taken, which these have settled, so what it closes of "
-                "them is no forecast"
-            )
-        notes += [
-            f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
-            f"{why}"
-            for names, why in fits.impossible.items()
-        ]
+    fit = fits.of.get(frozenset(judged.verdict))
+    if fit is not None and fit.share < 1.0:
+        notes.append(
+            f"{joined(fit.names)} as fitted overshoots in the recordings held out: "
+            f"{fit.share:.0%} of it is taken, which these have settled, so what it closes of them "
+            "is no forecast"
+        )
+    notes += [
+        f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "
+        f"{why}"
+        for names, why in fits.impossible.items()
+    ]
     return notes
 
 

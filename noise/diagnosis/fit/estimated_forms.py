@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import solve_toeplitz
 from scipy.ndimage import uniform_filter1d
@@ -26,8 +25,9 @@ from models.condition import known_condition
 from models.radiation.impulse_responses import ImpulseResponses
 from models.transfer_functions.measured import impulse_response
 from models.transfer_functions.transfer_function import TransferFunction
+from noise.base.arrays import Array
 from noise.diagnosis.fit.case_comparison import CaseComparison
-from noise.diagnosis.simulated.transfer_functions import predict
+from noise.diagnosis.simulated.transfer_functions import OUTPUTS, predict
 from sim.chain import padded_sum
 from sim.effects import EFFECTS
 from sim.effects.effect import Effect, Values
@@ -57,17 +57,6 @@ _USABLE = (0.40, 0.45)
 _FADE = 0.25
 """Of an impulse response, as a share of its length; assumed."""
 
-_AMOUNT = Parameter(1.0, "", 0.0, 4.0, "over what was estimated")
-
-
-@dataclass(frozen=True, eq=False)
-class _Compared:
-    """The torque of a recording, and what the outputs have that it should not have made of them."""
-
-    free: bool
-    torque: NDArray[np.float64]
-    left: dict[str, NDArray[np.float64]]
-
 
 def estimated_forms(comparison: CaseComparison, chosen: Sequence[int]) -> list[Effect]:
     """Estimate forms of `ESTIMATED`.
@@ -85,48 +74,40 @@ def estimated_forms(comparison: CaseComparison, chosen: Sequence[int]) -> list[E
     """
     rates = {i: comparison.recordings[i].rate for i in chosen}
     rate = Counter(rates.values()).most_common(1)[0][0]
-    compared = [_compared(comparison, i) for i in chosen if rates[i] == rate]
-    having = [c for c in compared if "acceleration" in c.left]
-    free = [c for c in having if c.free]
-    forms = [_form("on beams", _beside(free, rate, bolted=False))] if free else []
-    if len(free) < len(having):
-        forms.append(_form("however the clamp stands", _beside(having, rate, bolted=True)))
+    free, bolted = [], []
+    for i in chosen:
+        if rates[i] == rate and "acceleration" in (pairs := _pairs(comparison, i)):
+            support = known_condition(comparison.recordings[i].condition).support_stiffness
+            (bolted if math.isinf(support) else free).append(pairs)
+    forms = [_form("on beams", free, rate, bolted=False)] if free else []
+    if bolted:
+        forms.append(_form("however the clamp stands", [*free, *bolted], rate, bolted=True))
     return forms
 
 
-def _form(what: str, chain: Callable[..., ImpulseResponses]) -> Effect:
-    stage = EFFECTS[ESTIMATED].stage
-    name = f"estimated {what}"
-    return Effect(ESTIMATED, stage, (name,), {"amount": _AMOUNT}, "amount", chain=chain)
-
-
-def _compared(comparison: CaseComparison, i: int) -> _Compared:
+def _pairs(comparison: CaseComparison, i: int) -> dict[str, tuple[Array, Array]]:
+    """Return a recording's torque with what each output has that it should not have made of it."""
     recording = comparison.recordings[i]
-    free = not math.isinf(known_condition(recording.condition).support_stiffness)
-    rows = {kind: recording.first(kind) for kind in ("torque", "acceleration", "pressure")}
-    if rows["torque"] is None:
-        return _Compared(free, np.empty(0), {})
-    torque, transfers = (
-        recording.samples[rows.pop("torque")],
-        comparison.runs.transfer_functions.whole(recording),
-    )
-    return _Compared(free, torque, {
-        kind: recording.samples[row] - predict(torque, recording.rate, transfers[kind])
-        for kind, row in rows.items()
-        if row is not None
-    })  # fmt: skip
+    row = recording.first("torque")
+    if row is None:
+        return {}
+    torque = recording.samples[row]
+    transfers = comparison.runs.transfer_functions.whole(recording)
+    return {
+        kind: (torque, recording.samples[out] - predict(torque, recording.rate, transfers[kind]))
+        for kind in OUTPUTS
+        if (out := recording.first(kind)) is not None
+    }
 
 
-def _beside(
-    having: Sequence[_Compared], rate: float, *, bolted: bool
-) -> Callable[..., ImpulseResponses]:
-    kinds = [k for k in ("acceleration", "pressure") if all(k in c.left for c in having)]
-    noise = [np.full(1, _NOISE**2)] * len(having)
+def _form(
+    what: str, having: Sequence[Mapping[str, tuple[Array, Array]]], rate: float, *, bolted: bool
+) -> Effect:
+    """Return a form of beam modes by what recordings have too much."""
     estimates = {
-        kind: wiener_estimate(
-            [(c.torque, c.left[kind]) for c in having], rate, _FREE, noise=lambda _f: noise
-        )
-        for kind in kinds
+        kind: wiener_estimate([pairs[kind] for pairs in having], rate, _FREE, noise=_NOISE)
+        for kind in OUTPUTS
+        if all(kind in pairs for pairs in having)
     }
 
     def chain(
@@ -144,15 +125,15 @@ def _beside(
         }  # fmt: skip
         return replace(paths, **more)
 
-    return chain
+    amount = Parameter(1.0, "", 0.0, 4.0, "over what was estimated")
+    stage = EFFECTS[ESTIMATED].stage
+    return Effect(
+        ESTIMATED, stage, (f"estimated {what}",), {"amount": amount}, "amount", chain=chain
+    )
 
 
 def wiener_estimate(
-    pairs: Sequence[tuple[NDArray[np.float64], NDArray[np.float64]]],
-    rate: float,
-    length: float,
-    *,
-    noise: Callable[[NDArray[np.float64]], Sequence[NDArray[np.float64]]] | None = None,
+    pairs: Sequence[tuple[Array, Array]], rate: float, length: float, *, noise: float = 0.0
 ) -> TransferFunction:
     """Estimate what makes the second of each pair from the first.
 
@@ -164,9 +145,8 @@ def wiener_estimate(
         Sampling rate [Hz].
     length : float
         How long the impulse response is [s].
-    noise : callable, optional
-        What a line of the input must exceed to tell something: mean squares of each pair, by
-        frequencies [Hz].
+    noise : float
+        White noise of the input, rms, which a line must exceed to tell something [any unit].
 
     Returns
     -------
@@ -186,16 +166,15 @@ def wiener_estimate(
     n = next_fast_len(2 * max(x.size for x, _ in pairs), real=True)
     frequency = np.asarray(np.fft.rfftfreq(n, 1.0 / rate), np.float64)
     power, cross = np.zeros(n // 2 + 1), np.zeros(n // 2 + 1, complex)
-    least = np.zeros(n // 2 + 1)
-    floors = [np.zeros(1)] * len(pairs) if noise is None else noise(frequency)
-    for (x, r), floor in zip(pairs, floors, strict=True):
+    least = 0.0
+    for x, r in pairs:
         window = tukey(x.size - cut, 0.1)
         of_x = rfft((x[cut:] - x[cut:].mean()) * window, n)
         of_r = rfft((r[cut:] - r[cut:].mean()) * window, n)
         weight = 1.0 / (float(np.mean(np.abs(of_x) ** 2)) + 1e-30)
         power += weight * np.abs(of_x) ** 2
         cross += weight * np.conj(of_x) * of_r
-        least += weight * float(np.sum(window**2)) * floor
+        least += weight * float(np.sum(window**2)) * noise**2
     width = max(3, round(_NEIGHBOURHOOD * n / rate))
     white = 1.0 / (uniform_filter1d(power, width, mode="nearest") + least + 1e-30)
     m = min(round(length * rate), n // 4)
