@@ -249,13 +249,6 @@ def _no_gap(diagnosis: Diagnosis) -> str:
     if math.isfinite(diagnosis.gap):
         times = gap_number(diagnosis.gap, ".2f")
         sentence += f" ({times} times as much as repeats, {p_number(diagnosis.p_value)})"
-    chances = diagnosis.probabilities
-    if chances.get("none", 1.0) < _LIKELY:
-        first = max((n for n in chances if n != "none"), key=lambda name: chances[name])
-        sentence += (
-            f". That is {percent(chances['none'])} likely only; if anything, it is "
-            f"{cause_of(first).name} ({percent(chances[first])})"
-        )
     return f"{sentence}."
 
 

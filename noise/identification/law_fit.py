@@ -516,7 +516,7 @@ def _simplest(scores: Sequence[LawScore]) -> str:
     """Return the simplest law that predicts nearly as well as the best."""
     best = scores[0]
     missed = {score.law: score.missed for score in scores}
-    numbers = {candidate.name: candidate.n_parameters for candidate in CANDIDATES}
+    numbers = {candidate.name: len(candidate.free) for candidate in CANDIDATES}
     return next(
         law
         for law, n in numbers.items()

@@ -92,11 +92,6 @@ class Candidate:
         """Whether the contact truly sticks."""
         return self.law == "coulomb"
 
-    @property
-    def n_parameters(self) -> int:
-        """Number of searched parameters."""
-        return len(self.free)
-
 
 CANDIDATES = tuple(
     Candidate(name, **row)
@@ -402,7 +397,7 @@ def priors(model: LawModel, loose: float = 1.0) -> tuple[Array, Array]:
     target : ndarray, shape (n_known,)
         [-]
     """
-    n = model.n_common + model.candidate.n_parameters
+    n = model.n_common + len(model.candidate.free)
     rows, target = [], []
 
     def row(places: dict[int, float], value: float) -> None:

@@ -25,6 +25,7 @@ from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
 from noise.diagnosis.evidence.channel_summary import USABLE
+from noise.diagnosis.prepare import measured_speed
 from noise.diagnosis.simulated.transfer_functions import (
     OUTPUTS,
     TransferFunctionCache,
@@ -133,7 +134,7 @@ class Levels:
     speed : float
         Stated speed [rad/s].
     turned : float, optional
-        Slope of the angle [rad/s]; None without an angle.
+        Mean speed of the angle [rad/s]; None without an angle.
     torque : float, optional
         Mean torque over the kinetic torque of the fit, negative if it drives the stated
         rotation [-]; None without a torque.
@@ -171,7 +172,7 @@ def levels_of(recording: Recording, rig: Rig, transfer_functions: TransferFuncti
         for kind in KINDS
         if (row := recording.first(kind)) is not None
     }
-    turned = _turning(signal["angle"], rate) if "angle" in signal else None
+    turned = measured_speed(signal["angle"], rate) if "angle" in signal else None
     if "torque" not in signal:
         return Levels(c.speed, turned, None, 0.0)
     torque, kinetic = signal["torque"], rig.fit(c.interference).kinetic_torque
@@ -233,13 +234,6 @@ def _alike(p: Array, m: Array, rate: float) -> float:
     most = int(_LONGEST_DELAY * rate)
     near = np.concatenate([correlation[-most:], correlation[: most + 1]])
     return float(near[np.argmax(np.abs(near))])
-
-
-def _turning(angle: Array, rate: float) -> float:
-    """Return the slope of an angle, shape (n,), by least squares [rad/s]."""
-    time = np.arange(angle.size) / rate
-    time -= time.mean()
-    return float(time @ (angle - angle.mean())) / float(time @ time)
 
 
 _RISE = 0.3

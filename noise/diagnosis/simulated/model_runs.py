@@ -172,12 +172,9 @@ class ModelRuns:
             The model cannot be simulated.
         """
         scatter = scatter or Scatter()
-        fine = DIAGNOSIS.rate(template.rate)
-        effects = self._active(model)
-        signals = self._radiated(model, effects, template, fine, seed, scatter)
-        signals = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
         return record(
-            signals, template.rate, template.condition, np.random.default_rng([seed, 3]), scatter,
+            self._sensed(model, template, seed, scatter), template.rate, template.condition,
+            np.random.default_rng([seed, 3]), scatter,
             decimation=DIAGNOSIS.decimation(template.rate), sensors=self.rig.sensors,
         )  # fmt: skip
 
@@ -201,27 +198,27 @@ class ModelRuns:
         ParameterError
             The model cannot be simulated.
         """
-        effects, fine = self._active(model), DIAGNOSIS.rate(template.rate)
         through = Acquisition(rate=template.rate, sensors=self.rig.sensors)
-        signals = self._radiated(model, effects, template, fine, seed, _EXACT)
-        read = apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
-
+        read = self._sensed(model, template, seed, _EXACT)
         decimation = DIAGNOSIS.decimation(template.rate)
         kinds = [kind for kind in KINDS if template.first(kind) is not None]
         rows = []
         for kind in kinds:
             sensor = through.sensors.of(kind)
-            row = decimate_sensed(read[kind], decimation, fine, sensor)
+            row = decimate_sensed(read[kind], decimation, decimation * template.rate, sensor)
             if sensor != Sensor():
                 row = digitise(row, kind, through, np.random.default_rng([seed, 3]))
             rows.append(row)
         channels = tuple(Channel(kind) for kind in kinds)
         return signature(replace(template, samples=np.stack(rows), channels=channels))
 
-    def _active(self, model: Model) -> list[ActiveEffect]:
+    def _sensed(self, model: Model, template: Recording, seed: int, scatter: Scatter) -> Signals:
+        """Return signals after the effects on sensors, before the sensors themselves."""
         specs = with_effects(self.rig, model.effects).effects
         active = [self.effect_of(spec).active(spec.parameters) for spec in specs]
-        return [one for one in active if not one.is_off]
+        effects, fine = [one for one in active if not one.is_off], DIAGNOSIS.rate(template.rate)
+        signals = self._radiated(model, effects, template, fine, seed, scatter)
+        return apply_sensor_effects(signals, effects, fine, np.random.default_rng([seed, 2]))
 
     def effect_of(self, spec: LawSpec) -> Effect:
         """Return the effect of a name, in a form of the simulator's own or a further one."""
