@@ -74,7 +74,8 @@ def estimated_forms(comparison: CaseComparison, chosen: Sequence[int]) -> list[E
     """
     rates = {i: comparison.recordings[i].rate for i in chosen}
     rate = Counter(rates.values()).most_common(1)[0][0]
-    free, bolted = [], []
+    free: list[dict[str, tuple[Array, Array]]] = []
+    bolted: list[dict[str, tuple[Array, Array]]] = []
     for i in chosen:
         if rates[i] == rate and "acceleration" in (pairs := _pairs(comparison, i)):
             support = known_condition(comparison.recordings[i].condition).support_stiffness
