@@ -102,14 +102,12 @@ def _rising(
     return along[i : i + 2][order], speed[i : i + 2][order]
 
 
-def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
-    """Draw the map of a design.
+def plot_screen(mapped: DesignMap) -> Figure:
+    """Draw the map of a design at its first temperature.
 
     Parameters
     ----------
     mapped : DesignMap
-    temperature : int
-        Which of the map's temperatures.
 
     Returns
     -------
@@ -127,7 +125,7 @@ def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
     n = len(grid.support_stiffness)
     speed, rows = _places(mapped)
     moving = "swinging" if grid.frequency else "at constant speed"
-    title = f"{mapped.design}, {mapped.environment}, {grid.temperature[temperature]:g} °C, {moving}"
+    title = f"{mapped.design}, {mapped.environment}, {grid.temperature[0]:g} °C, {moving}"
     with styled():
         figure = new_figure(min(7.6, 3.4 + 0.5 * rows.size), title)
         axes = figure.subplots(2, n, sharex=True, sharey=True, squeeze=False)
@@ -135,12 +133,10 @@ def plot_screen(mapped: DesignMap, *, temperature: int = 0) -> Figure:
         for k in range(n):
             above, below = axes[:, k]
             above.set_title(support_words(grid.support_stiffness[k]))
-            _draw_labels(above, mapped, temperature, k)
+            _draw_labels(above, mapped, 0, k)
             below.set_facecolor(_QUIET)
-            level = np.where(
-                mapped.label[temperature, k] == "none", np.nan, mapped.level[temperature, k]
-            )
-            _say_quiet(below, mapped, temperature, k)
+            level = np.where(mapped.label[0, k] == "none", np.nan, mapped.level[0, k])
+            _say_quiet(below, mapped, 0, k)
             images.append(
                 below.pcolormesh(
                     _edges(speed),

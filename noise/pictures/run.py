@@ -111,9 +111,6 @@ _LOWEST = 20.0
 _DYNAMIC_RANGE = 120.0
 """Of a spectrum's axis at most [dB]."""
 
-_WHOLE_ALONE = 1.5
-"""A run that is no longer than so many windows is shown once."""
-
 _LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED = 0.1, 0.1, 0.1
 """What an axis spans at least [Nm], [mrad], [rad/s]."""
 
@@ -175,48 +172,35 @@ def condition_words(condition: Condition, motion: Motion) -> str:
 
 def _histories(figure: SubFigure, motion: Motion, window: Window) -> None:
     """Draw torque, displacement and sliding speed over the run and over a few slips."""
-    n, rate = motion.torque.size, motion.rate
-    whole = slice(0, n)
-    zoom = slice(window.first, window.last)
-    both = n > _WHOLE_ALONE * (window.last - window.first)
-    columns = (whole, zoom) if both else (whole,)
-    axes = figure.subplots(3, len(columns), sharex="col", sharey="row", squeeze=False)
-    for column, part in zip(axes.T, columns, strict=True):
-        in_detail = part is zoom or not both
-        seconds = np.arange(part.start, part.stop) / rate
-        unit = "s" if seconds[-1] > 1.0 and not in_detail else "ms"
-        # A window late in a long run is told from where it begins.
-        start = part.start / rate if in_detail else 0.0
-        time = (seconds - start) * (1.0 if unit == "s" else 1e3)
+    rate = motion.rate
+    start, end = window.first / rate, window.last / rate
+    whole, zoom = slice(0, motion.torque.size), slice(window.first, window.last)
+    time = np.arange(motion.torque.size) / rate
+    axes = figure.subplots(3, 2, sharex="col", sharey="row")
+    for column, part, shown in zip(
+        axes.T, (whole, zoom), (time, 1e3 * (time[zoom] - start)), strict=True
+    ):
         for row, curves in zip(column, _motion_curves(motion, part), strict=True):
             for values, colour, label, width in curves:
-                row.plot(*thinned(time, values), color=colour, linewidth=width, label=label or None)
-        column[-1].set_xlim(time[0], time[-1])
-        column[0].set_title("Whole run" if not in_detail else _cycles_title(window, both=both))
-        column[-1].set_xlabel(
-            f"Time [{unit}]" if start == 0 else f"Time from {start:.4g} s [{unit}]"
-        )
-        if both and not in_detail:
-            factor = 1.0 if unit == "s" else 1e3
-            for row in column:
-                row.axvspan(
-                    factor * window.first / rate, factor * window.last / rate,
-                    color="black", alpha=0.3, linewidth=0, zorder=3,
-                )  # fmt: skip
+                row.plot(
+                    *thinned(shown, values), color=colour, linewidth=width, label=label or None
+                )
+        column[-1].set_xlim(shown[0], shown[-1])
+    cycles = "" if window.frequency is None else f", {window.frequency:.4g} cycles a second"
+    axes[0, 0].set_title("Whole run")
+    axes[0, 1].set_title(f"Part of it{cycles}")
+    axes[-1, 0].set_xlabel("Time [s]")
+    axes[-1, 1].set_xlabel(f"Time from {start:.4g} s [ms]")
     names = ("Torque [Nm]", "Displacement [mrad]", "Speed [rad/s]")
     least = (_LEAST_TORQUE, _LEAST_ANGLE, _LEAST_SPEED)
     for row, name, smallest, curves in zip(
-        axes, names, least, _motion_curves(motion, whole), strict=True
+        axes[:, 0], names, least, _motion_curves(motion, whole), strict=True
     ):
-        row[0].set_ylabel(name)
-        row[0].set_ylim(_limits([values for values, *_ in curves], smallest))
-        _legend_above(row[0])
+        row.axvspan(start, end, color="black", alpha=0.3, linewidth=0, zorder=3)
+        row.set_ylabel(name)
+        row.set_ylim(_limits([values for values, *_ in curves], smallest))
+        _legend_above(row)
     figure.align_ylabels(axes[:, 0])
-
-
-def _cycles_title(window: Window, *, both: bool) -> str:
-    name = "Part of it" if both else "Whole run"
-    return name if window.frequency is None else f"{name}, {window.frequency:.4g} cycles a second"
 
 
 def _motion_curves(motion: Motion, part: slice) -> tuple[list[Curve], ...]:
