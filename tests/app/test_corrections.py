@@ -274,14 +274,3 @@ def test_undo_of_one_track_leaves_the_other_as_the_classifier_has_named_it_since
     write_table(folder / "labels.csv", COLUMNS, new)
     labels.undo()
     assert [label for *_, label, _ in in_table(folder)] == ["none", "squeal"]
-
-
-def test_one_track_of_a_long_recording_is_corrected_and_the_other_stays(tmp_path):
-    tone = 0.1 * np.sin(0.2 * np.pi * np.arange(130 * 8000))
-    soundfile.write(tmp_path / "a.wav", np.stack([tone, tone], axis=1), 8000)
-    rows = [row("a.wav", "none", 0.0, 130.0, channel=track) for track in "12"]
-    write_table(tmp_path / "labels.csv", COLUMNS, rows)
-    pieces = [Correction(0.0, 125.0, "none", "2"), Correction(125.0, 130.0, "squeal", "2")]
-    found = correct(labels_of(tmp_path), 0, [Correction(0.0, 130.0, "none", "1"), *pieces])
-    assert [one["label_source"] for one in found] == ["classifier", "classifier", "human"]
-    assert found[2]["level_dbfs"] == pytest.approx(-23.01, abs=0.02)

@@ -68,9 +68,3 @@ def test_render_tells_what_the_filter_takes_away_and_levels_of_what_is_left(run)
     (part,) = told["parts"]
     assert part["level_db"] == pytest.approx(93.98, abs=0.05)
     assert part["notes"] == [f"filtered: {words}"]
-
-
-@pytest.mark.parametrize("band", ["2000..200", "0..200", "200", "a..b"])
-def test_a_band_that_is_none_is_refused(run, capsys, band):
-    assert main(["render", "run.wav", "--band", band, "--out", "x.wav"]) == 2
-    assert "--band is " in capsys.readouterr().err

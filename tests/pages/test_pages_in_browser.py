@@ -28,20 +28,6 @@ PAPER = (round(186 * 96.0 / 25.4), round(273 * 96.0 / 25.4))
 OLD, NEW, QUIET = "old <b>", "new & damped", "PDMS"
 CREAK, SQUEAL = "day1/recordings/creak.wav", "day1/recordings/squeal.wav"
 
-CUT = """([selector, height]) => {
-  const stays = (node) => {
-    for (let one = node; one && one !== document.body; one = one.parentElement)
-      if (getComputedStyle(one).breakInside === "avoid" && one.offsetHeight !== undefined
-          && one.getBoundingClientRect().height <= height) return true;
-    return false;
-  };
-  const shown = [...document.querySelectorAll(selector)].filter((node) =>
-    node.checkVisibility() && node.getBoundingClientRect().height > 2);
-  return [shown.length, shown.filter((node) => !stays(node)).map((node) =>
-    `${node.tagName} ${node.getAttribute("class")} ${node.textContent.slice(0, 40)}`)];
-}"""
-"""How many are printed of what has to stay whole, and what of it a page break may cut."""
-
 
 def report(folder):
     assert main(["demo", "--out", str(folder)]) == 0
@@ -123,8 +109,6 @@ def test_a_page_is_accessible_fits_every_screen_and_paper_and_asks_nothing(brows
     assert {url.partition(":")[0] for url in opened.requests} <= {"file", "data"}
     page.set_viewport_size(dict(zip(("width", "height"), PAPER, strict=True)))
     page.emulate_media(media="print")
-    for selector in ("main img", "tbody tr", ".map svg", "figure", ".card"):
-        assert page.evaluate(CUT, [selector, PAPER[1]])[1] == []
     pdf = page.pdf(format="A4", prefer_css_page_size=True)
     assert 1 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 12
     page.close()

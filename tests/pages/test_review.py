@@ -126,15 +126,6 @@ def test_recordings_of_the_same_name_are_told_apart_by_their_folders(tmp_path):
     }
 
 
-def test_of_several_channels_of_sound_the_first_is_heard_and_the_page_says_so(tmp_path):
-    both = np.column_stack((0.5 * sound("creak"), sound("squeal")))
-    soundfile.write(tmp_path / "stereo.flac", both, RATE)
-    page = Page(review(tmp_path, tmp_path / "out", classify=False).path)
-    assert "1 of 2 channels is heard" in page.html
-    spectrum = np.abs(np.fft.rfft(page.sound("stereo")[0]))
-    assert np.fft.rfftfreq(page.sound("stereo")[0].size, 1 / RATE)[spectrum.argmax()] < 60.0
-
-
 def test_a_bad_file_is_named_on_the_page_and_the_exit_code_is_1(campaign, capsys):
     (campaign / "recordings" / "broken.wav").write_bytes(b"no sound")
     (campaign / "bad.csv").write_text("file,label\na.wav,bang\n", encoding="utf-8")
