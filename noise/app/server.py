@@ -7,7 +7,7 @@ import secrets
 import signal
 import socket
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
@@ -149,25 +149,16 @@ def serve(opened: Opened, port: int, ready: Callable[[str], None]) -> None:
         # In a thread of its own it leaves signals alone; its handlers would end the process before
         # what runs beside it is told to end.
         serving = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
-        with _ended_by_signals(stop):
-            ready(f"http://127.0.0.1:{port}/?token={token}")
-            serving.start()
-            while serving.is_alive():
-                serving.join(0.2)  # without a limit Windows hears no Ctrl-C
+        _stop_on_signals(stop)
+        ready(f"http://127.0.0.1:{port}/?token={token}")
+        serving.start()
+        while serving.is_alive():
+            serving.join(0.2)  # without a limit Windows hears no Ctrl-C
 
 
-@contextlib.contextmanager
-def _ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """Stop on signals of the terminal within the block."""
-    if threading.current_thread() is not threading.main_thread():  # signals are not for us
-        yield
-        return
-    named = (getattr(signal, name, None) for name in ("SIGINT", "SIGTERM", "SIGHUP"))
-    before = {
-        number: signal.signal(number, lambda *_: stop()) for number in named if number is not None
-    }
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+def _stop_on_signals(stop: Callable[[], None]) -> None:
+    """Stop on signals of the terminal; in another thread than the main one they are not for us."""
+    if threading.current_thread() is threading.main_thread():
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+            if hasattr(signal, name):
+                signal.signal(getattr(signal, name), lambda *_: stop())

@@ -69,14 +69,9 @@ class Assessment:
         """Return the values of `row` for a sidecar, third octaves as an object."""
         row = self.row(full_scale)
         entry = {key: row[key] for key in COLUMNS if key in row and "third_octave" not in key}
-        levels, unit = self.levels, "db"
-        if not self.calibrated:
-            levels, unit = self.in_file(full_scale), "dbfs"
-            entry["level_dbfs_a"] = _rounded(levels.level_a)
-            entry["l_afmax_dbfs"] = _rounded(levels.level_af_max)
-        entry[f"third_octaves_{unit}"] = {
-            band: _rounded(level) for band, level in levels.third_octaves.items()
-        }
+        if self.calibrated:
+            octaves = self.levels.third_octaves
+            entry["third_octaves_db"] = {band: _rounded(octaves[band]) for band in octaves}
         return entry
 
     def words(self, full_scale: float) -> str:

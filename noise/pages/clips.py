@@ -195,15 +195,12 @@ class Clip:
         Samples in the unit of the entry, such as [Pa].
     start, end : float
         Interval of the recording [s].
-    full_scale : float
-        What full scale of it is worth, in the unit of the entry, such as [Pa].
     """
 
     flac: bytes
     samples: NDArray[np.float32]
     start: float
     end: float
-    full_scale: float
 
 
 def common_gain(entries: Iterable[Entry]) -> Gain:
@@ -240,11 +237,10 @@ def make_clips(entries: Mapping[str, Entry], gain: Gain) -> dict[str, Clip]:
     for key, entry in entries.items():
         if (samples := entry.sound) is None:
             continue
-        full_scale = gain.of(entry)
-        fractions = np.clip((samples / full_scale).astype(np.float64), -largest, largest)
+        fractions = np.clip((samples / gain.of(entry)).astype(np.float64), -largest, largest)
         flac = io.BytesIO()
         steps = np.frombuffer(integers(fractions, _BITS, None), "<i2")
         soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
         end = entry.offset + samples.size / RATE
-        clips[key] = Clip(flac.getvalue(), samples, entry.offset, end, full_scale)
+        clips[key] = Clip(flac.getvalue(), samples, entry.offset, end)
     return clips
