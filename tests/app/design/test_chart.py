@@ -27,9 +27,3 @@ def test_a_map_comes_from_a_process_beside_the_sound(app):
     )
     low, high = re.search(r'data-speed="([\d.]+) ([\d.]+)"', coarse["found"]["html"]).groups()
     assert float(low) < 2.0 < 10.0 < float(high)
-
-
-def test_a_detail_that_there_is_not_is_refused(app):
-    status, reason = app.request("api/design/chart", DESIGN | {"detail": 3})
-    assert status == 400
-    assert b"detail" in reason

@@ -145,21 +145,6 @@ def test_a_slider_is_heard(browser, app):
     opened.close()
 
 
-def test_a_coarse_map_and_a_former_name_say_so(browser, app):
-    opened = DesignPage(browser, app)
-    caption = opened.page.locator(".chart.preview .plot .uncertain")
-    caption.get_by_text("Preview").wait_for(timeout=2e5)
-    faded = "getComputedStyle(document.querySelector('.chart.preview svg')).opacity < 1"
-    assert opened.page.evaluate(faded)
-    opened.play()
-    updating = "document.querySelector('.design-view').classList.contains('updating')"
-    opened.until(f"!({updating})")
-    opened.type("speed", 7)
-    assert opened.page.evaluate(updating)
-    opened.until(f"!({updating})")
-    opened.close()
-
-
 def test_it_fits_and_everybody_can_use_it(browser, app):
     opened = DesignPage(browser, app)
     opened.play()

@@ -119,12 +119,6 @@ def test_a_sound_that_never_lost_has_a_finite_value_and_no_vote_none():
     assert rows[3]["value"] is rows[3]["low_95"] is None
 
 
-def test_votes_for_no_difference_are_half_a_vote_for_each():
-    names = ("a.wav", "b.wav")
-    one, other = scale(Jury(1, "", "?", "one gain", (names,) * 4, ("equal",) * 4))
-    assert (one["value"], other["value"], one["no_difference"]) == (0.0, 0.0, 4)
-
-
 def test_a_known_scale_lies_within_its_intervals_in_19_of_20():
     rng = np.random.default_rng(5)
     held = []
