@@ -73,7 +73,6 @@ def test_a_condition_is_passed_on_in_si_units(call):
 @pytest.mark.parametrize(
     ("text", "note"),
     [
-        ("0,1\n1,3\n", ""),
         ("\ufeffspeed_rad_s, temperature_C, time_s\n1,20,0\n\n3,21,1\n", ""),
         ("time_s,speed_rad_s\r\n0,1\r\n9,19\r\n", "the run takes its first 1 s"),
         ("0.5,2\n0.6,2.2\n", "covers 0.5 to 0.6 s, the run 0 to 1 s"),
@@ -93,7 +92,6 @@ def test_a_log_gives_the_speed_with_or_without_header(call, tmp_path, capsys, te
     ("given", "cause"),
     [
         (("--interference", "0.1"), "those of 0.178 mm are used"),
-        (("--interference", "0.000279"), "outside the usual 0.02 to 3 mm"),
         (("--effect", "partial_slip"), "effect partial_slip cannot act on friction law contact"),
         (("--temperature", "5"), "at 23, shifted by WLF; that is assumed, not measured"),
         (("--temperature", "95"), "WLF holds up to 80, 100 K above its glass transition"),
@@ -101,7 +99,6 @@ def test_a_log_gives_the_speed_with_or_without_header(call, tmp_path, capsys, te
          "temperature 80 degree Celsius is recorded and changes nothing"),
         (("--support-stiffness", "3000"), "for 3000 Nm/rad it is interpolated, or held beyond"),
         (("--support-stiffness", "3e5"), "support_stiffness_Nm_rad = 300000 is outside the usual"),
-        (("--change", "critical_torque=x1000"), "outside the usual 0.3 to 500 Nm"),
         (("--change", "critical_torque=x9999"), "nothing slips in this run"),
         (("--speed", "30"), "speed 30 rad/s is above 13 rad/s, the highest speed to which fluoro"),
     ],
@@ -174,10 +171,8 @@ def test_the_shipped_suspension_is_recorded_with_both_bushings(tmp_path, capsys)
     [
         ("bar_wall_mm = 2", "bar_wall_mm = 20", "wall = 0.02 m must be at most half"),
         ("arm_length_mm = 250", "arm_lenght_mm = 250", "did you mean 'arm_length_mm'"),
-        ("arm_length_mm = 250", "", "arm_length_mm is missing"),
         ("bushing_spacing_mm = 600", "bushing_spacing_mm = 890", "does not lie on the plate"),
         ('wheels = "opposite"', 'wheels = "sideways"', "there are together, opposite, left"),
-        ("link_stiffness_N_m = 1.5e6", "link_stiffness_N_m = -1", "link_stiffness_N_m = -1 must"),
     ],
 )
 def test_what_a_suspension_file_says_wrongly_is_named(tmp_path, old, new, says):

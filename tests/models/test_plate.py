@@ -13,12 +13,11 @@ from sim.analysis.sound_power import radiated_power
 RATE = 96e3
 
 
-def _plate(length=0.9, width=0.6, thickness=8e-3, loss_factor=0.03):
-    return Plate(length, width, thickness, 2e11, 7850.0, 0.3, loss_factor, (-0.07, 0.04))
+STEEL = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12))
 
 
 def test_pressure_is_rayleighs_integral_over_the_plates_acceleration():
-    plate, position = _plate(), (0.15, -0.1, 0.8)
+    plate, position = STEEL, (0.15, -0.1, 0.8)
     modes = plate_modes(plate, 16e3)
     force = modes.shape([-0.2], [0.1]).T
     frequency = np.array([120.0, 777.0, 2500.0, 6000.0, 11000.0, 14500.0])
@@ -47,13 +46,6 @@ def test_pressure_is_rayleighs_integral_over_the_plates_acceleration():
     assert np.angle(found / expected) == pytest.approx(0, abs=0.05)
 
 
-STEEL = Plate(0.9, 0.6, 8e-3, 2e11, 7850.0, 0.3, 0.03, (0.0, 0.12))
-
-
-def _wavenumber(frequency):
-    return 2 * np.pi * frequency / SOUND_SPEED
-
-
 @pytest.mark.parametrize("frequency", [150.0, 1100.0, 2500.0])
 def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(frequency):
     modes = plate_modes(STEEL, 1e3)
@@ -66,7 +58,7 @@ def test_power_is_the_intensity_of_rayleighs_integral_over_a_far_hemisphere(freq
     cosine, weight = np.polynomial.legendre.leggauss(40)
     cosine, weight = (cosine + 1) / 2, weight / 2
     angle = np.arange(96) * 2 * np.pi / 96
-    k = _wavenumber(frequency)
+    k = 2 * np.pi * frequency / SOUND_SPEED
     total = 0.0
     for c, w in zip(cosine, weight, strict=True):
         k_x, k_y = (k * np.sqrt(1 - c**2) * turn(angle) for turn in (np.cos, np.sin))

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import json
-import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -59,11 +58,8 @@ def one_channel(**entries: object) -> dict[str, object]:
 
 OF_OTHERS = [
     "[]",
-    "null",
-    '"transcript"',
     '[{"start": 0.0, "end": 1.5, "text": "creak"}]',
     {"streams": [{"codec_type": "audio", "channels": 2}], "format": {"duration": "3.0"}},
-    {"channels": 2, "sample_rate": 44100},
     {"conditions": "cloudy", "date": "2024-05-01"},
     {"calibrated": "2024-05-01", "microphone": "4189"},
 ]
@@ -96,13 +92,11 @@ def conditions_of(**entries: object) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("{", "is no JSON"),
         ("[" * 100_000, "is no JSON"),
         ({"calibrated": "yes"}, "calibrated = 'yes' must be true or false"),
         ({"calibrated": True, "channels": 2, "operator": "me"}, "channels = 2 must be a list"),
         ({"channels": [{"unit": "N m"}]}, "channel 1: name is missing"),
         ({"channels": [{"name": "torque_1"}]}, "name = 'torque_1' must be one of"),
-        ({"channels": [{"name": "torque_" + "9" * 5000}]}, "999': name ="),
         ({"channels": [{"name": "angle"}] * 3}, "channel 'angle' is named 3 times"),
         *(
             (one_channel(unit=unit), "channel 'torque': unit = ")
@@ -112,10 +106,8 @@ def conditions_of(**entries: object) -> dict[str, object]:
         (one_channel(position_m=[1, 2]), "must be a list of 3 numbers"),
         ({"conditions": []}, "conditions must be a table"),
         (conditions_of(speed_rad_s="5"), "speed_rad_s = '5' must be a number"),
-        (conditions_of(speed_rad_s=math.nan), "speed_rad_s = nan"),
         (conditions_of(interference_mm=-0.1), "mm = -0.1 must be a number from 0 to 10 mm"),
         (conditions_of(support_stiffness_Nm_rad=0), "support_stiffness_Nm_rad = 0 must be"),
-        (conditions_of(support_stiffness_Nm_rad="fixed"), "support_stiffness_Nm_rad"),
         (conditions_of(temperature_C=-300), "C = -300 must be a number from -273.15"),
         (conditions_of(material=" "), "material = ' ' must be a name"),
         (conditions_of(speed_rpm=48), "'speed_rpm', which is not read; state speed_rad_s"),
