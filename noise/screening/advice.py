@@ -80,14 +80,9 @@ class Offer:
     left: Condition | None = None
 
     @property
-    def factor(self) -> float:
-        """On the nominal value [-]."""
-        return 1.0 + self.percent / 100.0
-
-    @property
     def value(self) -> float:
         """After the change, in the unit of the nominal value, such as [Nm]."""
-        return self.nominal * self.factor
+        return self.nominal * (1.0 + self.percent / 100.0)
 
     @property
     def words(self) -> str:

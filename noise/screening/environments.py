@@ -65,17 +65,6 @@ def _environments() -> dict[str, Environment]:
     }
 
 
-def environment_names() -> tuple[str, ...]:
-    """Return the names of the environments.
-
-    Examples
-    --------
-    >>> environment_names()
-    ('dry', 'cold', 'hot', 'wet', 'dust', 'grease')
-    """
-    return tuple(_environments())
-
-
 def environment(name: str) -> Environment:
     """Return an environment by its name; case does not matter.
 
@@ -91,9 +80,8 @@ def environment(name: str) -> Environment:
     """
     match = _environments().get(name.strip().lower())
     if match is None:
-        raise ParameterError(
-            f"environment {name!r} is unknown; there are {', '.join(environment_names())}"
-        )
+        known = ", ".join(_environments())
+        raise ParameterError(f"environment {name!r} is unknown; there are {known}")
     return match
 
 

@@ -19,14 +19,7 @@ from numpy.typing import NDArray
 from models.condition import FIXED
 from models.rig import Rig
 from models.show import short_repr
-from noise.screening.design import (
-    SPEED_STEP,
-    Design,
-    Swinging,
-    Use,
-    axis_words,
-    spread,
-)
+from noise.screening.design import SPEED_STEP, Design, Swinging, Use, axis_words, spread
 from noise.screening.environments import DRY, environment
 
 DEFAULT_SPEEDS = (0.25, 13.0)
@@ -181,10 +174,9 @@ def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[
     [Swinging(amplitude=0.26, frequency=(1.0, 2.0))]
     """
     given = given or Use()
-    if given.swinging is not None:
-        return [None, given.swinging] if given.speed else [given.swinging]
-    if given.speed:
-        return [None]
+    if given.speed or given.swinging is not None:
+        steady = [None] if given.speed else []
+        return steady if given.swinging is None else [*steady, given.swinging]
     swings: dict[float, tuple[float, ...]] = {}
     for one in (design.use.swinging for design in designs):
         if one is not None:
@@ -249,17 +241,12 @@ def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
     'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
     """
     given = _fits(rig)
-    other = [
-        fit
-        for fit in interference
-        if not any(math.isclose(one, fit, rel_tol=_SAME_FIT) for one in given)
-    ]
-    within = [fit for fit in other if given[0] < fit < given[-1]]
-    held = [fit for fit in other if fit not in within]
-    parts = [f"for {_millimetres(held)} mm the nearest is held"] if held else []
-    parts += [f"for {_millimetres(within)} mm they are interpolated"] if within else []
-    return f"fits are given for {_millimetres(given)} mm; {', '.join(parts)}" if parts else ""
-
-
-def _millimetres(values: Sequence[float]) -> str:
-    return axis_words([1e3 * value for value in values])
+    held: list[float] = []
+    within: list[float] = []
+    for fit in interference:
+        if not any(math.isclose(one, fit, rel_tol=_SAME_FIT) for one in given):
+            (within if given[0] < fit < given[-1] else held).append(1e3 * fit)
+    parts = [f"for {axis_words(held)} mm the nearest is held"] if held else []
+    parts += [f"for {axis_words(within)} mm they are interpolated"] if within else []
+    known = axis_words([1e3 * fit for fit in given])
+    return f"fits are given for {known} mm; {', '.join(parts)}" if parts else ""

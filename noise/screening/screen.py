@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,7 +31,7 @@ from models.show import short_repr
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
 from noise.batch.journal import Journal
 from noise.screening.advice import advise
-from noise.screening.design import Design, Swinging, Use, load_designs
+from noise.screening.design import Design, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
 from noise.screening.grid import Grid, fits_remark, shared_grid, shared_motions
 from noise.screening.mapping import SIMULATED, DesignMap, map_design
@@ -226,11 +226,14 @@ def screen(
     loaded, refused = load_designs(designs, change)
     motions = shared_motions(list(loaded.values()), given)
     grids = {
-        (name, swinging): shared_grid(list(loaded.values()), given, where=name, swinging=swinging)
-        for name in names
-        for swinging in motions
+        where: {
+            swinging: shared_grid(list(loaded.values()), given, where=where, swinging=swinging)
+            for swinging in motions
+        }
+        for where in names
     }
-    total, done = len(loaded) * len(grids) * (simulations + _STATISTICS), 0
+    n_maps = len(loaded) * len(names) * len(motions)
+    total, done = n_maps * (simulations + _STATISTICS), 0
 
     def work_on(points: int) -> None:
         nonlocal done
@@ -244,13 +247,16 @@ def screen(
         evaluate = keeping(evaluate, journal)
     for name, design in loaded.items():
         try:
-            own = {(name, where): _remarks(design, where, grids, given) for where in names}
+            own = {
+                (name, where): _remarks(design, where, [*grids[where].values()], given)
+                for where in names
+            }
             for text in dict.fromkeys(itertools.chain(*own.values())):
                 progress(f"{name}: {text}")
             of_design: list[DesignMap] = []
-            for (where, swinging), grid in grids.items():
+            for where, swinging in itertools.product(names, motions):
                 progress(f"mapping {name}, {where}")
-                rig = in_environment(design.rig, environment(where))
+                rig, grid = in_environment(design.rig, environment(where)), grids[where][swinging]
                 refuse_never_slipping(rig, grid)
                 one = map_design(
                     rig, grid, evaluate, design=name, environment=where, most=simulations
@@ -363,14 +369,8 @@ def refuse_never_slipping(rig: Rig, grid: Grid) -> None:
     )
 
 
-def _remarks(
-    design: Design,
-    where: str,
-    grids: Mapping[tuple[str, Swinging | None], Grid],
-    given: Use | None,
-) -> list[str]:
-    """Return remarks on the data of a design in an environment."""
-    here = [grid for (name, _), grid in grids.items() if name == where]
+def _remarks(design: Design, where: str, here: Sequence[Grid], given: Use | None) -> list[str]:
+    """Return remarks on the data of a design over its grids in an environment."""
     rig, fits = design.rig, here[0].interference
     temperature = sorted({value for each in here for value in each.temperature})
     speed = [max(each.use[1] for each in here)]

@@ -52,12 +52,6 @@ _OTHER_SECONDS = 1.5
 """Length of a run, of which the last three quarters are looked at [s]. Slips of the thesis's model
 can be chaotic, so that their mean rate needs many; it is cheap to run."""
 
-_HIGHEST_DAMPING, _DAMPING_TOLERANCE = 0.3, 1e-5
-"""Where searches for the damping that ends stick-slip start, and how well they end [Nm s/rad]."""
-
-_SEARCHED = 1.0
-"""Length of a run of a search [s]."""
-
 
 @dataclass(frozen=True)
 class Case:
@@ -211,7 +205,6 @@ def _critical_damping(material: str, case: Case) -> float:
     return critical_damping(
         rig_of(material), case.speed,
         interference=case.interference, support_stiffness=case.support_stiffness,
-        highest=_HIGHEST_DAMPING, tolerance=_DAMPING_TOLERANCE, seconds=_SEARCHED,
     )  # fmt: skip
 
 

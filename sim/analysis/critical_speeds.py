@@ -31,13 +31,11 @@ from sim.shaft import ConstantSpeed
 SPEEDS = tuple(0.25 * i for i in range(1, 53))
 """Speeds of the search, from 0.25 to 13 rad/s, the range of the measurements."""
 
-_SECONDS = 1.0
-
 _LEAST = declared(Fit)["damping"].value.low
 """Smallest damping of a fit [Nm s/rad]."""
 
-_STEP = 0.01
-"""Step of the search for a bracket [Nm s/rad]."""
+_HIGHEST, _STEP, _TOLERANCE = 0.3, 0.01, 1e-5
+"""Where the search for a damping starts, its first step and its last [Nm s/rad]."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +59,6 @@ def critical_speeds(
     interference: float,
     support_stiffness: float,
     speeds: Sequence[float] = SPEEDS,
-    *,
-    seconds: float = _SECONDS,
 ) -> CriticalSpeeds:
     """Find the critical speeds of a rig.
 
@@ -75,8 +71,6 @@ def critical_speeds(
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
     speeds : sequence of float
         Speeds of the search [rad/s], positive and rising.
-    seconds : float
-        Length of each run [s].
 
     Returns
     -------
@@ -98,7 +92,7 @@ def critical_speeds(
         raise ParameterError("critical speeds: the speeds to try must rise from above 0 rad/s")
     v_crit2 = 0.0
     for speed in reversed(speeds):
-        motion = motion_from_rest(rig, speed, interference, support_stiffness, seconds=seconds)
+        motion = motion_from_rest(rig, speed, interference, support_stiffness)
         regime = friction_regime(motion)
         if regime is Regime.STEADY_SLIDING:
             continue
@@ -115,7 +109,7 @@ def motion_from_rest(
     interference: float,
     support_stiffness: float,
     *,
-    seconds: float = _SECONDS,
+    seconds: float = 1.0,
 ) -> Motion:
     """Simulate the constant version of a rig from rest at constant speed.
 
@@ -169,14 +163,7 @@ def with_damping(rig: Rig, damping: float) -> Rig:
 
 
 def critical_damping(
-    rig: Rig,
-    speed: float,
-    *,
-    interference: float,
-    support_stiffness: float,
-    highest: float = 0.3,
-    tolerance: float = 1e-5,
-    seconds: float = 1.0,
+    rig: Rig, speed: float, *, interference: float, support_stiffness: float
 ) -> float:
     """Find the largest damping c_E at which a rig has stick-slip.
 
@@ -190,17 +177,11 @@ def critical_damping(
         [m]
     support_stiffness : float
         [Nm/rad]; ``math.inf`` for the clamp bolted to the baseplate.
-    highest : float
-        Where the search starts [Nm s/rad].
-    tolerance : float
-        [Nm s/rad]
-    seconds : float
-        Length of each run, of which the last half is judged [s].
 
     Returns
     -------
     float
-        [Nm s/rad]; 0 if there is no stick-slip, ``inf`` if there is even at `highest`.
+        [Nm s/rad]; 0 if there is no stick-slip, ``inf`` if there is even at 0.3 Nm s/rad.
 
     Raises
     ------
@@ -213,31 +194,23 @@ def critical_damping(
 
     >>> from models.rig_file import load_material_rig
     >>> rig = load_material_rig("fluorocarbon-thesis")
-    >>> round(critical_damping(rig, 7.5, interference=0.279e-3, support_stiffness=3745.0,
-    ...                        highest=0.1), 4)
+    >>> round(critical_damping(rig, 7.5, interference=0.279e-3, support_stiffness=3745.0), 4)
     0.0781
     """
 
     def sticks(damping: float) -> bool:
-        motion = motion_from_rest(
-            with_damping(rig, damping), speed, interference, support_stiffness, seconds=seconds
-        )
+        damped = with_damping(rig, damping)
+        motion = motion_from_rest(damped, speed, interference, support_stiffness)
         return friction_regime(motion) is Regime.STICK_SLIP
 
-    if not (highest > 0.0 and tolerance > 0.0):
-        raise ParameterError(
-            f"critical damping: highest = {highest:g} and tolerance = {tolerance:g} must be "
-            "positive"
-        )
-    if sticks(highest):
-        return math.inf
-    above = highest
-    below = max(highest - _STEP, 0.0)
+    above, below = math.inf, _HIGHEST
     while not sticks(below):
         if below == 0.0:
             return 0.0
         above, below = below, max(below - _STEP, 0.0)
-    while above - below > tolerance:
+    if math.isinf(above):
+        return above
+    while above - below > _TOLERANCE:
         middle = 0.5 * (above + below)
         if sticks(middle):
             below = middle
