@@ -197,9 +197,8 @@ def plain():
     ("kinds", "words"),
     [
         (("pressure",), "no torque"),
-        (("torque",), "no acceleration and no sound"),
+        (("torque",), "not assessed, by these channels: beam modes"),
         (("torque", "pressure"), "no acceleration"),
-        (("acceleration", "pressure"), "by acceleration and sound alone"),
         (("torque", "acceleration", "pressure"), "no shaft angle"),
     ],
 )

@@ -57,26 +57,9 @@ def channel_costs(kinds: Collection[str]) -> list[str]:
     >>> channel_costs({"torque", "pressure", "angle"})
     ['no acceleration: structure and radiation cannot be told apart']
     """
-    missing = {"torque", "acceleration", "pressure", "angle"} - set(kinds)
-    unseen = ", ".join(sorted(name.replace("_", " ") for name in unseen_causes(kinds)))
-    lines = []
-    if "torque" in missing:
-        outputs = {"acceleration": "acceleration", "pressure": "sound"}
-        recorded = " and ".join(word for kind, word in outputs.items() if kind not in missing)
-        lines.append(
-            f"no torque: drive, contact and structure cannot be told apart by {recorded} alone"
-        )
-    if {"acceleration", "pressure"} <= missing:
-        lines.append(f"no acceleration and no sound: {unseen} cannot be assessed")
-    elif "acceleration" in missing:
-        lines.append("no acceleration: structure and radiation cannot be told apart")
-    elif "pressure" in missing:
-        lines.append(f"no sound: {unseen} cannot be assessed")
-    if "angle" in missing:
-        lines.append(
-            "no shaft angle: the shaft is taken to turn evenly at the speed that was set, and an "
-            "uneven drive is told by what else it changes"
-        )
+    lines = [text for kind, text in _ADVICE["without"].items() if kind not in kinds]
+    if unseen := sorted(name.replace("_", " ") for name in unseen_causes(kinds)):
+        lines.append(f"not assessed, by these channels: {', '.join(unseen)}")
     return lines
 
 
