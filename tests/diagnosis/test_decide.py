@@ -70,16 +70,6 @@ def test_an_effect_that_shows_in_what_a_fit_leaves_is_named_beside_it():
     assert likeliest(hidden) == ("partial_slip",)
 
 
-@given(st.floats(0.01, 0.99), st.floats(0.01, 0.99))
-def test_the_plainer_it_shows_the_likelier_it_is(one, other):
-    before = chances({PARTIAL: 0.3, PAIR: 0.3})
-    first, second = (
-        updated(before, fits_of(8.0, 7.9, {PARTIAL: 2.0}, remaining=left_by((PARTIAL, p))))[PAIR]
-        for p in (one, other)
-    )
-    assert (first - second) * (one - other) >= 0.0
-
-
 @given(gaps, gaps, gaps)
 def test_of_two_fits_the_one_that_leaves_less_is_favoured(recalibrated, one, other):
     before = chances({PARTIAL: 0.3, WEAK: 0.3})

@@ -103,11 +103,3 @@ def test_the_map_has_the_guilty_place_first_and_every_place_once(nulls):
     p_values = [place.p_value for place in places]
     assert p_values == sorted(p_values)
     assert 0.0 < p_values[0] <= 1.0
-
-
-def test_the_p_value_of_a_stage_falls_below_what_the_number_of_cases_can_show(nulls):
-    far, farther = (
-        stage_findings(_table({"pressure_gain_9": size}), nulls)["radiation"].p_value
-        for size in (300.0, 3000.0)
-    )
-    assert farther < far < len(STAGES) / (len(nulls.largest) + 1.0)
