@@ -17,8 +17,9 @@ from models.rig import Rig
 from noise.diagnosis.bench.channels import misplaced_torque
 from noise.diagnosis.bench.check import refuse_unusable
 from noise.diagnosis.bench.faults import clipped_channels, without_dead_channels
-from noise.diagnosis.prepare import measured_speed, prepared, shortest
+from noise.diagnosis.prepare import measured_speed, prepared
 from noise.diagnosis.signature import KINDS
+from noise.diagnosis.starts import shortest
 from noise.recordings import find_recordings, read_recording
 from noise.recordings.rotation import as_logged
 

@@ -1,17 +1,28 @@
-"""Start of a recording, in which the shaft comes to its speed.
+"""Start of a recording, in which the shaft comes to its speed, and the settled part after it.
 
 A start is a deviation from the later speed that exists at the beginning, ends, and is several times
 larger than all later deviations. It is detected from the angle, which is read where it crosses the
 steps of its converter, so that a coarse converter is as accurate as a fine one. A torque that rises
 from zero shows a start from rest.
+
+A settled recording is returned unchanged, bit for bit. The settled part of another has one of a few
+lengths, so that recordings can share simulations and repeats of a condition stay comparable.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
+from models.condition import known_condition
 from models.recording import Recording
 from noise.base.arrays import Array
+from noise.diagnosis.evidence.channel_summary import segment_frequency
+from noise.diagnosis.evidence.reconstruction import LEAD, TAIL
+from noise.diagnosis.words import joined
 
 _BLOCK, _LAG = 5e-3, 2
 """Length of the blocks over which an angle is averaged [s], and number of blocks on either side for
@@ -113,3 +124,134 @@ def _start_from_zero(torque: Array, rate: float) -> float:
     if lowest <= 0.0 or np.abs(turned[:n]).mean() > _FROM_ZERO * lowest:
         return 0.0
     return float(np.argmax(turned >= lowest)) / rate
+
+
+_SHORTEST = LEAD + TAIL + 0.1
+"""Least duration with enough cycles [s]."""
+
+_PATH_ENDS = 0.09
+"""Duration of the ends that `evidence.channel_summary` omits before it takes spectra
+of segments [s]."""
+
+RINGING = 0.06
+"""Decay time of a ringing clamp after the speed has settled [s]: three time constants 2 J_C / c of
+the thesis's clamp."""
+
+_LENGTHS = 0.05
+"""Step of the durations of settled parts [s], so that recordings share simulations; assumed."""
+
+_MOST_NAMED = 6
+"""Largest number of recordings that a note names; assumed."""
+
+_SHORTENED = 0.5
+"""Least share of a recording that remains if it is shortened to the length of its repeat [-];
+assumed."""
+
+
+def shortest(rate: float) -> float:
+    """Return the least duration of a recording for a comparison [s].
+
+    Parameters
+    ----------
+    rate : float
+        Sampling rate [Hz].
+
+    Examples
+    --------
+    >>> round(shortest(30e3), 2), round(shortest(12e3), 2)
+    (0.17, 0.26)
+    """
+    return max(_SHORTEST, _PATH_ENDS + segment_frequency(rate)[0] / rate)
+
+
+def settled_parts(
+    recordings: Sequence[Recording],
+) -> tuple[tuple[Recording, ...], tuple[str, ...], dict[int, str]]:
+    """Return recordings without their starts.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Recordings with speed, interference and support stiffness in their conditions.
+
+    Returns
+    -------
+    parts : tuple of Recording
+        Settled parts; a settled recording is unchanged, and repeats of a condition have one length.
+    notes : tuple of str
+        What was cut off, in one line; empty if nothing was.
+    refused : dict of int to str
+        Reason why a recording has no settled part, by index; empty if no recording has one.
+
+    Examples
+    --------
+    >>> from models.condition import KnownCondition
+    >>> from models.recording import Channel, Recording
+    >>> speed = np.minimum(np.arange(30_000) / 9e3, 1.0)  # of 1 rad/s, reached after 0.3 s
+    >>> at = KnownCondition(1.0, 0.279e-3, 3745.0)
+    >>> run = Recording(np.cumsum(speed)[None] / 30e3, 30e3, (Channel("angle"),), at, name="run")
+    >>> parts, notes, _ = settled_parts([run])
+    >>> round(parts[0].duration, 3), notes
+    (0.6, ('run: the first 0.4 s at most, in which the shaft comes to its speed, were left out',))
+    """
+    starts = [start_of(recording) for recording in recordings]
+    refused = {
+        i: f"the shaft comes to its speed only {start:.2g} s after the beginning, and "
+        f"{shortest(recording.rate):.2g} s at least must be left"
+        for i, (start, recording) in enumerate(zip(starts, recordings, strict=True))
+        if start > recording.duration - shortest(recording.rate)
+    }
+    if len(refused) == len(recordings):
+        refused = {}
+    n_settled = {
+        i: _n_settled(recording, starts[i])
+        for i, recording in enumerate(recordings)
+        if i not in refused
+    }
+    repeats: dict[tuple[object, ...], list[int]] = {}
+    for i in n_settled:
+        recording, at = recordings[i], known_condition(recordings[i].condition)
+        stated = (at.speed, at.interference, at.support_stiffness)
+        alike = (*stated, recording.rate, recording.samples.shape[1])
+        repeats.setdefault(alike, []).append(i)
+    for places in repeats.values():
+        fewest = min(n_settled[i] for i in places)
+        if fewest >= _SHORTENED * max(n_settled[i] for i in places):
+            n_settled |= dict.fromkeys(places, fewest)
+    parts, cut, longest = [], [], 0.0
+    for i, n in n_settled.items():
+        recording = recordings[i]
+        first = recording.samples.shape[1] - n
+        parts.append(_from(recording, first))
+        if first:
+            cut.append(recording.name or f"recording {i + 1}")
+            longest = max(longest, first / recording.rate)
+    if not cut:
+        return tuple(parts), (), refused
+    which = joined(cut) if len(cut) <= _MOST_NAMED else f"{len(cut)} recordings"
+    note = (
+        f"{which}: the first {longest:.2g} s at most, in which the shaft comes to its speed, were "
+        "left out"
+    )
+    return tuple(parts), (note,), refused
+
+
+def _n_settled(recording: Recording, start: float) -> int:
+    """Return the number of samples of the settled part after a start [s]."""
+    n = int(recording.samples.shape[1])
+    if start == 0.0:
+        return n
+    left = recording.duration - start
+    rounded = _LENGTHS * float(np.floor((left - RINGING) / _LENGTHS + 1e-6))
+    return min(n, math.ceil(max(rounded, shortest(recording.rate)) * recording.rate))
+
+
+def _from(recording: Recording, first: int) -> Recording:
+    """Return the part of a recording from a sample on, with its angle starting at zero."""
+    if first == 0:
+        return recording
+    samples = recording.samples[:, first:].copy()
+    for row, channel in enumerate(recording.channels):
+        if channel.kind == "angle":
+            samples[row] -= samples[row, 0]
+    return replace(recording, samples=samples)

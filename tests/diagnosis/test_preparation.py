@@ -9,16 +9,9 @@ from hypothesis import given, settings, strategies as st
 from models.condition import KnownCondition
 from models.recording import Channel, Recording
 from models.sensors import Sensor, Sensors
-from noise.diagnosis.prepare import (
-    HIGHEST_RATE,
-    LONGEST,
-    at_measured_speeds,
-    bounded,
-    settled_parts,
-    shortest,
-)
+from noise.diagnosis.prepare import HIGHEST_RATE, LONGEST, at_measured_speeds, bounded
 from noise.diagnosis.sensors import converter_step, estimated_noise, with_estimated_sensors
-from noise.diagnosis.starts import start_of
+from noise.diagnosis.starts import settled_parts, shortest, start_of
 from sim.acquisition import Acquisition
 from tests.helpers.small_rigs import RIG
 
