@@ -166,11 +166,9 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
-        high, rate = conditioning.band_analytic(
-            self.transform, pulse_band_from(self.limit), self.limit
-        )
-        start = self.transform.lead / self.rate
-        return pulses_of(self.analytic[0], high, rate, start=start)
+        low = pulse_band_from(self.limit)
+        high, rate = conditioning.band_analytic(self.transform, low, self.limit)
+        return pulses_of(self.analytic[0], high, rate)
 
     @cached_property
     def modulation(self) -> Modulation:

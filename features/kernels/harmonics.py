@@ -261,15 +261,10 @@ class Harmonics:
         [Hz]; NaN for a signal without a period.
     strength : float
         Normalised autocorrelation at the period, 0 to 1 [-].
-    amplitudes : ndarray, shape (n_harmonics,)
-        Peak amplitude of each harmonic up to the upper limit, the fundamental first [unit]; empty
-        without a fundamental.
     harmonicity : float
         Share of the power in the harmonics above the noise floor, 0 to 1.
     count : int
         Harmonics within 30 dB of the strongest one and 10 dB above the local noise floor.
-    peaks : Lines
-        All discrete lines, harmonic or not.
     inharmonicity : float
         Distance of a line from the nearest harmonic over half the fundamental, averaged over all
         lines by power: 0 if all are harmonics, 0.5 for random lines, 1 midway between harmonics.
@@ -278,10 +273,8 @@ class Harmonics:
 
     fundamental: float
     strength: float
-    amplitudes: NDArray[np.float64]
     harmonicity: float
     count: int
-    peaks: Lines
     inharmonicity: float
 
     @property
@@ -382,7 +375,7 @@ def harmonics_of(
     rate = spectrum.rate
     period = strongest_period(x, rate, lowest=LOWEST, highest=highest)
     if lines.total <= 0.0 or period.strength < WEAKEST_PERIOD:
-        return Harmonics(math.nan, period.strength, np.empty(0), 0.0, 0, lines, math.nan)
+        return Harmonics(math.nan, period.strength, 0.0, 0, math.nan)
     refined = lines
     wanted = period.frequency / _BINS_A_HARMONIC
     if spectrum.spacing > 1.01 * wanted and x.size / rate > 1.01 / spectrum.spacing:
@@ -400,12 +393,9 @@ def harmonics_of(
     standing = nearby[bins] >= 10.0 ** (0.1 * PROMINENCE_DB)
     count = int(np.count_nonzero(standing & (power > 0.0) & (power >= least)))
     harmonicity = min(1.0, max(0.0, float(excess.sum()) / lines.total))
-    amplitudes = np.sqrt(2.0 * power)
     resolved = fundamental >= _APART * spectrum.spacing
     inharmonicity = _inharmonicity(fundamental, refined) if resolved else math.nan
-    return Harmonics(
-        fundamental, period.strength, amplitudes, harmonicity, count, lines, inharmonicity
-    )
+    return Harmonics(fundamental, period.strength, harmonicity, count, inharmonicity)
 
 
 def _inharmonicity(fundamental: float, lines: Lines) -> float:

@@ -60,15 +60,12 @@ class Lines:
         [Hz], interpolated between bins.
     power : ndarray, shape (n_lines,)
         Mean square of each [unit^2].
-    prominence : ndarray, shape (n_lines,)
-        Level of the peak above the local floor [dB].
     total : float
         Mean square of the searched band [unit^2].
     """
 
     frequency: NDArray[np.float64]
     power: NDArray[np.float64]
-    prominence: NDArray[np.float64]
     total: float
 
     @property
@@ -195,9 +192,8 @@ def find_lines(
     floor = noise_floor(spectrum) if floor is None else floor
     inside = (f >= low) & (f <= high)
     total = float(p[inside].sum()) * spacing
-    empty = np.empty(0)
     if not total > 0.0:
-        return Lines(empty, empty, empty, 0.0)
+        return Lines(np.empty(0), np.empty(0), 0.0)
     level = 10.0 * np.log10(np.maximum(p, _LEAST_FLOOR * p.max()))
     above = level - 10.0 * np.log10(floor)
     peaks, _ = find_peaks(
@@ -210,12 +206,12 @@ def find_lines(
     peaks = peaks[inside[peaks] & (above[peaks] >= max(PROMINENCE_DB, _chance_level(spectrum)))]
     peaks = _separate(peaks, level, f, spacing)
     if peaks.size == 0:
-        return Lines(empty, empty, empty, total)
+        return Lines(np.empty(0), np.empty(0), total)
     power = line_powers(spectrum, floor, f[peaks], spacing=_nearest_neighbour(f[peaks]))
     power = np.clip(power, 0.0, total)
     order = np.argsort(power)[::-1]
     frequency = parabola_tops(level, peaks)[0] * spacing
-    return Lines(frequency[order], power[order], above[peaks][order], total)
+    return Lines(frequency[order], power[order], total)
 
 
 def line_powers(

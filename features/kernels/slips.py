@@ -277,8 +277,6 @@ class Pulses:
 
     Parameters
     ----------
-    times : ndarray, shape (n_pulses,)
-        Times from the start of the signal [s].
     rate : float
         Pulses per second [1/s]; 0 for fewer than two. The fades at the signal's ends do not count.
     irregularity : float
@@ -298,7 +296,6 @@ class Pulses:
         Share of that band's energy in the loudest tenth of the time, 0.1 to 1; NaN as before.
     """
 
-    times: NDArray[np.float64]
     rate: float
     irregularity: float
     glide: float
@@ -308,7 +305,7 @@ class Pulses:
     concentration: float
 
 
-_NO_PULSES = Pulses(np.empty(0), 0.0, *[math.nan] * 6)
+_NO_PULSES = Pulses(0.0, *[math.nan] * 6)
 """Result for a signal without content."""
 
 
@@ -334,11 +331,7 @@ def pulse_band_from(limit: float) -> float:
 
 
 def pulses_of(
-    whole: NDArray[np.complex128],
-    high: NDArray[np.complex128],
-    high_rate: float,
-    *,
-    start: float = 0.0,
+    whole: NDArray[np.complex128], high: NDArray[np.complex128], high_rate: float
 ) -> Pulses:
     """Find the pulses in a sound or an acceleration from its analytic signals.
 
@@ -348,8 +341,6 @@ def pulses_of(
         Analytic signals of the described band, and of the band of pulses.
     high_rate : float
         Sampling rate of the latter [Hz].
-    start : float
-        Time of their first sample [s].
 
     Returns
     -------
@@ -377,7 +368,6 @@ def pulses_of(
     tenth = max(1, smooth.size // 10)
     loudest = np.partition(smooth, -tenth)[-tenth:]
     return Pulses(
-        times=start + times,
         rate=times.size / (high.size / high_rate) if times.size > 1 else 0.0,
         irregularity=irregularity,
         glide=glide,

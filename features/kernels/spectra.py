@@ -4,9 +4,8 @@
 The estimator is Welch's average of Hann-windowed segments. The segments are spread evenly so that
 the last one ends with the last sample; they overlap by half or slightly more, because a block of
 0.25 s has no samples to lose. The result is a power spectral density, the only normalisation whose
-level for noise does not depend on the resolution; the amplitude of a sinusoid is a separate
-property. The diagnosis uses complex spectra of segments that overlap by exactly half, since it
-compares two channels.
+level for noise does not depend on the resolution. The diagnosis uses complex spectra of segments
+that overlap by exactly half, since it compares two channels.
 """
 
 from __future__ import annotations
@@ -136,7 +135,6 @@ DEFAULT_RESOLUTION = 4.0
 """Default spacing of the bins [Hz]: segments of a quarter of a second."""
 
 _ROLL_OFF = 0.85
-_HANN_NOISE_BANDWIDTH = 1.5
 _FLATNESS_FLOOR = 1e-12
 
 _FADE_ENERGY = 0.375
@@ -177,16 +175,6 @@ class Spectrum:
         edges = np.append(self.frequency - 0.5 * self.spacing, 0.5 * self.rate)
         edges[0] = 0.0
         return edges, np.append(0.0, np.cumsum(self.density) * self.spacing)
-
-    @property
-    def amplitude(self) -> NDArray[np.float64]:
-        """Peak amplitude spectrum [unit], shape (n_bins,).
-
-        A sinusoid of amplitude A at a bin's frequency reads A there; between two bins up to
-        1.4 dB less, the scalloping loss of the Hann window. Noise has no amplitude: its reading
-        depends on the resolution.
-        """
-        return np.sqrt(2.0 * self.density * self.spacing * _HANN_NOISE_BANDWIDTH)
 
     @property
     def degrees_of_freedom(self) -> float:
@@ -256,8 +244,8 @@ def autospectrum(
     >>> import numpy as np
     >>> t = np.arange(48000) / 48e3
     >>> tone = autospectrum(2.0 * np.sin(2 * np.pi * 1000 * t), 48e3)
-    >>> round(float(tone.amplitude.max()), 3), round(float(tone.density.sum() * tone.spacing), 3)
-    (2.0, 2.0)
+    >>> round(float(tone.density.sum() * tone.spacing), 3)
+    2.0
     """
     if not (math.isfinite(resolution) and resolution > 0):
         raise ParameterError(f"resolution is {resolution}; it is a positive number of hertz")

@@ -30,7 +30,6 @@ def test_a_sawtooth_has_many_harmonics_of_its_fundamental(rate):
     assert found.fundamental == pytest.approx(155, rel=0.005)
     assert found.count >= 25
     assert found.harmonicity > 0.95
-    assert found.amplitudes[:4] == pytest.approx([1, 1 / 2, 1 / 3, 1 / 4], rel=0.02)
 
 
 @pytest.mark.parametrize("seconds", [0.25, 0.5, 1.0])
