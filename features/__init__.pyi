@@ -9,7 +9,6 @@ from .kernels.levels import (
     THESIS_BANDS as THESIS_BANDS,
     band_levels as band_levels,
     band_power as band_power,
-    third_octave_edges as third_octave_edges,
     third_octave_levels as third_octave_levels,
 )
 from .kernels.lines import (

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.levels import band_levels
-from features.kernels.lines import Lines, find_lines
+from features.kernels.lines import find_lines
 from features.kernels.spectra import autospectrum
 from features.kernels.weighting import a_weighting
 from models.recording import REFERENCE_PRESSURE
@@ -73,7 +73,7 @@ class NoiseCriteria:
     stick : float
         Fraction of time in stick, over the bound of chatter [-].
     second : float
-        Level of the second line of the torque re the first, re the bound [dB].
+        Level of the second line of the torque re the first, re the bound [dB]; NaN without lines.
     share : float
         Fraction of the power from 20 Hz to 5 kHz in the strongest line, over the bound [-].
     """
@@ -159,7 +159,7 @@ def noise_criteria(
         swing=float(np.std(motion.torque)) / mean / LEAST_OSCILLATION,
         audible=math.sqrt(lines.total) / mean / LEAST_OSCILLATION,
         stick=float(np.mean(motion.stuck)) / _LEAST_STICK,
-        second=_second(lines) + _LINE_RANGE,
+        second=lines.second_level + _LINE_RANGE,
         share=lines.strongest_share / _LEAST_SHARE,
     )
 
@@ -199,13 +199,6 @@ def is_ambiguous(criteria: NoiseCriteria) -> bool:
         for factor in (1.0 - _SHARE, 1.0 / (1.0 - _SHARE))
     ]
     return any(other.label != criteria.label for other in moved)
-
-
-def _second(lines: Lines) -> float:
-    """Level of the second line re the first [dB]."""
-    if lines.power.size < 2 or not lines.power[1] > 0.0:
-        return -math.inf
-    return 10.0 * math.log10(float(lines.power[1] / lines.power[0]))
 
 
 def _level(pressure: NDArray[np.float64], rate: float) -> float:

@@ -27,6 +27,9 @@ NOMINAL_THIRD_OCTAVES = (
 )
 """Nominal mid-band frequencies [Hz] of the bands from 25 Hz to 20 kHz (IEC 61260-1)."""
 
+_FROM_1_KHZ = np.arange(len(NOMINAL_THIRD_OCTAVES)) - NOMINAL_THIRD_OCTAVES.index("1000")
+"""Number of each band from that at 1 kHz; exact bands lie a factor of 10^0.1 apart (Clause 5)."""
+
 THESIS_BANDS = ((0.0, 2e3), (2e3, 5e3), (5e3, 15e3))
 """Bands [Hz] of torque, structure and creak in the thesis (5.2.3)."""
 
@@ -41,31 +44,6 @@ _LEAST_BINS = 4
 
 THIRD_OCTAVE_RESOLUTION = 1.4
 """Spacing of the bins [Hz] for one-third octaves: the band at 25 Hz is 5.8 Hz wide."""
-
-
-def third_octave_edges() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the exact edges of the one-third-octave bands.
-
-    Returns
-    -------
-    low, middle, high : ndarray, shape (30,)
-        Lower edges, mid-band frequencies and upper edges [Hz].
-
-    Notes
-    -----
-    IEC 61260-1:2014, Clause 5, base ten: neighbouring bands lie a factor of 10^0.1 apart
-    about 1 kHz, edges half of it on a logarithmic scale from the middle.
-
-    Examples
-    --------
-    >>> low, middle, high = third_octave_edges()
-    >>> [round(float(edge[16]), 1) for edge in (low, middle, high)]
-    [891.3, 1000.0, 1122.0]
-    """
-    x = np.arange(len(NOMINAL_THIRD_OCTAVES)) - NOMINAL_THIRD_OCTAVES.index("1000")
-    middle = 1000.0 * 10.0 ** (x / 10.0)
-    half = 10.0**0.05
-    return middle / half, middle, middle * half
 
 
 def band_power(spectrum: Spectrum, low: ArrayLike, high: ArrayLike) -> NDArray[np.float64]:
@@ -154,7 +132,8 @@ def third_octave_levels(spectrum: Spectrum, *, reference: float) -> dict[str, fl
     >>> round(levels["1000"], 2), levels["20000"]
     (93.98, nan)
     """
-    low, _, high = third_octave_edges()
+    middle = 1000.0 * 10.0 ** (_FROM_1_KHZ / 10.0)
+    low, high = middle / 10.0**0.05, middle * 10.0**0.05
     power = band_power(spectrum, low, high)
     power[high > _ANTI_ALIAS * 0.5 * spectrum.rate] = np.nan
     power[high - low < _LEAST_BINS * spectrum.spacing] = np.nan

@@ -16,6 +16,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator, Sized
 from contextlib import contextmanager
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
 if TYPE_CHECKING:
@@ -45,14 +46,8 @@ def set_verbosity(*, quiet: bool = False, verbose: bool = False) -> None:
     _verbosity.quiet, _verbosity.since = quiet, time.monotonic() if verbose else None
 
 
-class _Verbosity:
-    """State of `set_verbosity`: whether to be quiet, and the start time for verbose lines [s]."""
-
-    quiet = False
-    since: float | None = None
-
-
-_verbosity = _Verbosity()
+_verbosity = SimpleNamespace(quiet=False, since=None)
+"""Whether to be quiet, and the start time for verbose lines [s]."""
 
 
 def say(text: str, *, error: bool = False) -> None:

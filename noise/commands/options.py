@@ -69,13 +69,11 @@ def number(
     return parse
 
 
-_LONGEST_NUMBER = 18  # digits
-
 MOST_WORKERS = 1024
 """Largest number of processes or threads of a command; systems refuse to start many more."""
 
 
-def whole_number(least: int, *, most: int | None = None) -> Callable[[str], int]:
+def whole_number(least: int, *, most: int = 10**18) -> Callable[[str], int]:
     """Return a parser of whole numbers in a range.
 
     Examples
@@ -83,14 +81,13 @@ def whole_number(least: int, *, most: int | None = None) -> Callable[[str], int]
     >>> whole_number(1)("2")
     2
     """
+    span = f"from {least} to {most}" if most < 10**18 else f"of {least} or more"
 
     def parse(text: str) -> int:
-        plain = text.strip()
-        decimal = plain.isdecimal() and len(plain) <= _LONGEST_NUMBER
-        if not decimal or int(plain) < least or (most is not None and int(plain) > most):
-            span = f"of {least} or more" if most is None else f"from {least} to {most}"
+        value = number_or_none(text)
+        if value is None or not least <= value <= most or not text.strip().isdecimal():
             raise ArgumentTypeError(f"is {text!r}, expected a whole number {span}")
-        return int(plain)
+        return int(text)
 
     return parse
 
