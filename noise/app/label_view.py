@@ -229,7 +229,7 @@ def conditions(row: Row) -> list[str]:
     facts = facts_of(Entry("", (row,)))
     if not row.get("material"):  # which one is assumed, the row's note says
         facts.pop("material", None)
-    return [f"{name} {facts[name].words}" for name in _CONDITIONS if name in facts]
+    return [f"{name} {facts[name]}" for name in _CONDITIONS if name in facts]
 
 
 def _kinds(one: Row) -> list[str]:

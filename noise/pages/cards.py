@@ -106,18 +106,6 @@ def _png(steps: NDArray[np.uint8]) -> bytes:
 _MOST_TICKS = 6
 
 
-class Fact(NamedTuple):
-    """Known value of a condition or noise, with its unit."""
-
-    text: str
-    unit: str = ""
-
-    @property
-    def words(self) -> str:
-        """Number and unit."""
-        return "clamp fixed" if self.text == "fixed" else f"{self.text} {self.unit}".strip()
-
-
 class Band(NamedTuple):
     """Labelled segment on a card: position and width in per cent, label, description."""
 
@@ -137,7 +125,7 @@ class EntryDisplay:
     title : str
     labels : tuple of str
         Labels of the entry, longest first.
-    facts : dict of str to Fact
+    facts : dict of str to str
         Those known of ``speed``, ``interference``, ``stiffness``, ``material``, ``temperature``,
         ``frequency``, ``level`` and ``fast``.
     note : str
@@ -149,20 +137,17 @@ class EntryDisplay:
         Labels in time, by the track that they belong to.
     ticks : tuple of (float, str)
         Of the time axis: share of the clip [%], and seconds of the recording.
-    alt : str
-        What the spectrogram shows.
     """
 
     id: str
     title: str
     labels: tuple[str, ...]
-    facts: dict[str, Fact]
+    facts: dict[str, str]
     note: str
     picture: bytes
     duration: float
     tracks: tuple[tuple[str, tuple[Band, ...]], ...]
     ticks: tuple[tuple[float, str], ...]
-    alt: str
 
 
 def draw_entries(
@@ -249,19 +234,17 @@ def _display(key: str, entry: Entry, clip: Clip | None, picture: bytes) -> Entry
         duration=end - start,
         tracks=_tracks(entry, start, end) if end > start else (),
         ticks=tuple((_per_cent(tick, start, end), f"{tick:.6g}") for tick in ticks),
-        alt=f"Spectrogram of {entry.title}, {_seconds(start)} to {_seconds(end)} s",
     )
 
 
-def facts_of(entry: Entry) -> dict[str, Fact]:
-    """Return the known facts of an entry; the label table has priority over the recording.
+def facts_of(entry: Entry) -> dict[str, str]:
+    """Return the known facts of an entry, with units; the label table has priority.
 
     Examples
     --------
     >>> from models.condition import FIXED, Condition
     >>> from noise.pages.clips import Entry
-    >>> facts = facts_of(Entry("run07", condition=Condition(5.0, 0.279e-3, FIXED)))
-    >>> [fact.words for fact in facts.values()]
+    >>> list(facts_of(Entry("run07", condition=Condition(5.0, 0.279e-3, FIXED))).values())
     ['5 rad/s', '0.279 mm', 'clamp fixed']
     """
     row, condition = entry.row or {}, entry.condition
@@ -278,30 +261,30 @@ def facts_of(entry: Entry) -> dict[str, Fact]:
         "stiffness": _condition_fact(
             row, "support_stiffness_Nm_rad", condition.support_stiffness, "Nm/rad"
         ),
-        "material": Fact(material) if material else None,
-        "temperature": None if temperature is None else _number(temperature, ".3g", "°C"),
+        "material": material,
+        "temperature": _number(temperature, ".3g", "°C"),
         "frequency": _number(hertz, ".0f" if number_or(hertz, 0.0) >= 100.0 else ".1f", "Hz"),
         "level": _number(row.get("level_dba"), ".1f", "dB(A)")
         or _number(row.get("level_db"), ".1f", "dB")
         or _number(row.get("level_dbfs"), ".1f", "dBFS"),
         "fast": _number(row.get("l_afmax_dba"), ".1f", "dB(A) Fast maximum"),
     }
-    return {name: fact for name, fact in facts.items() if fact is not None}
+    return {name: words for name, words in facts.items() if words}
 
 
-def _condition_fact(row: Row, column: str, logged: float | None, unit: str) -> Fact | None:
+def _condition_fact(row: Row, column: str, logged: float | None, unit: str) -> str:
     low, high = row.get(f"{column}_low"), row.get(f"{column}_high")
     source = row.get(f"{column}_source")
     if source == "inferred" and isinstance(low, float) and isinstance(high, float):
-        return Fact(f"{_plain(low, '.2g')} to {_plain(high, '.2g')}", f"{unit} (inferred)")
+        return f"{_plain(low, '.2g')} to {_plain(high, '.2g')} {unit} (inferred)"
     value = row.get(column)
     return _number(value if isinstance(value, int | float) else logged, ".5g", unit)
 
 
-def _number(value: object, form: str, unit: str) -> Fact | None:
+def _number(value: object, form: str, unit: str) -> str:
     if not isinstance(value, int | float):
-        return None
-    return Fact("fixed") if math.isinf(value) else Fact(_plain(value, form), unit)
+        return ""
+    return "clamp fixed" if math.isinf(value) else f"{_plain(value, form)} {unit}"
 
 
 def _plain(value: float, form: str) -> str:

@@ -286,7 +286,7 @@ def draw_comparisons(
                     b.Text(silent, "soft small"),
                     b.Panels(illustration_panels(illustration)),
                 ],
-                ", ".join(fact.words for name, fact in known.items() if name != "material"),
+                ", ".join(words for name, words in known.items() if name != "material"),
                 "compared",
             )
         )

@@ -67,7 +67,7 @@ def page_html(
     about: dict[str, dict[str, object]] = {}
     for key in clips:
         display, on_card = displays[key], key not in without_card
-        facts = [fact.words for fact in display.facts.values()] if on_card else [display.note]
+        facts = [*display.facts.values()] if on_card else [display.note]
         about[key] = {
             "title": display.title, "label": " + ".join(display.labels),
             "facts": " · ".join(facts), "duration": display.duration,

@@ -178,8 +178,8 @@ def test_inferred_bounds_stand_in_plain_digits_and_say_what_is_assumed():
         "support_stiffness_Nm_rad_high": 12345.6, "support_stiffness_Nm_rad_source": "inferred",
     }  # fmt: skip
     facts = facts_of(Entry("run.wav", (told,)))
-    assert facts["stiffness"].words == "2700 to 12000 Nm/rad (inferred)"
-    assert facts["material"].words == "assuming a fluorocarbon bushing like the shipped one"
+    assert facts["stiffness"] == "2700 to 12000 Nm/rad (inferred)"
+    assert facts["material"] == "assuming a fluorocarbon bushing like the shipped one"
 
 
 def test_two_sounds_of_one_title_neither_clip_nor_wrap_whichever_is_louder():
