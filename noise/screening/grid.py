@@ -175,7 +175,7 @@ def shared_motions(designs: Sequence[Design], given: Use | None = None) -> list[
     """
     given = given or Use()
     if given.speed or given.swinging is not None:
-        steady = [None] if given.speed else []
+        steady: list[Swinging | None] = [None] if given.speed else []
         return steady if given.swinging is None else [*steady, given.swinging]
     swings: dict[float, tuple[float, ...]] = {}
     for one in (design.use.swinging for design in designs):

@@ -217,7 +217,7 @@ def map_design(
 
 def _nearest(axis: Sequence[float], values: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the index on an axis of the nearest to each value."""
-    return np.abs(np.array(axis)[:, None] - values).argmin(axis=0)
+    return np.asarray(np.abs(np.array(axis)[:, None] - values).argmin(axis=0))
 
 
 def _stride(values: NDArray[np.float64], apart: float) -> int:
