@@ -11,10 +11,7 @@ from .kernels.levels import (
     band_power as band_power,
     third_octave_levels as third_octave_levels,
 )
-from .kernels.lines import (
-    Lines as Lines,
-    find_lines as find_lines,
-)
+from .kernels.lines import Lines as Lines, find_lines as find_lines
 from .kernels.slips import (
     Pulses as Pulses,
     TorqueSlips as TorqueSlips,
@@ -37,10 +34,7 @@ from .modal.hammer import (
     check_hit as check_hit,
     estimate_transfer_function as estimate_transfer_function,
 )
-from .modal.modal_fit import (
-    Modes as Modes,
-    fit_modes as fit_modes,
-)
+from .modal.modal_fit import Modes as Modes, fit_modes as fit_modes
 from .table import (
     FEATURES as FEATURES,
     WINDOW_FEATURES as WINDOW_FEATURES,

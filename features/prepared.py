@@ -140,11 +140,7 @@ class Prepared:
     def harmonics(self) -> Harmonics:
         """Fundamental and harmonics."""
         return harmonics_of(
-            self.in_band[0],
-            self.spectrum,
-            self.floor,
-            self.lines,
-            highest=min(HIGHEST, self.limit),
+            self.in_band[0], self.spectrum, self.floor, self.lines, highest=min(HIGHEST, self.limit)
         )
 
     @cached_property
@@ -277,12 +273,7 @@ class Prepared:
 
 
 def prepare(
-    signal: ArrayLike,
-    rate: float,
-    kind: str,
-    *,
-    calibrated: bool = True,
-    first: int = 0,
+    signal: ArrayLike, rate: float, kind: str, *, calibrated: bool = True, first: int = 0
 ) -> Prepared:
     """Check a signal and prepare it for features.
 

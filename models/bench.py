@@ -9,12 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from models.errors import ParameterError
-from models.schema import (
-    Flag,
-    Quantity,
-    Vector,
-    refuse_impossible,
-)
+from models.schema import Flag, Quantity, Vector, refuse_impossible
 
 HIGHEST_PLATE_FREQUENCY = 16e3
 """Highest mode of the plate [Hz]: measured creaks fill the band up to 15 kHz."""

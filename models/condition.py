@@ -19,14 +19,7 @@ _SPEED = Quantity("speed_rad_s", 1.0, "rad/s", -1e6, 1e6, (-25.0, 25.0))
 _FIT = Quantity("interference_mm", 1e-3, "mm", 1e-6, 10.0, (0.02, 3.0), 0.279)
 # 2214 and 3745 Nm/rad at the rig (Table 3.2).
 _SUPPORT = Quantity(
-    "support_stiffness_Nm_rad",
-    1.0,
-    "Nm/rad",
-    1e-3,
-    1e12,
-    (1e3, 2e5),
-    2214.0,
-    infinite="fixed",
+    "support_stiffness_Nm_rad", 1.0, "Nm/rad", 1e-3, 1e12, (1e3, 2e5), 2214.0, infinite="fixed"
 )
 # From a car's cold start to beside its exhaust.
 _TEMPERATURE = Quantity(

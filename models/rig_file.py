@@ -46,11 +46,7 @@ _DATA = resources.files("models") / "data"
 _APART = {"base", "change", "measured_response", "design", "tolerances", "sensors"}
 """Keys that are not fields of `Rig`."""
 
-_PLAIN_BUSHING = {
-    "elastomer_damping_share": 0.5,
-    "effects": [],
-    "friction": {"law": "coulomb"},
-}
+_PLAIN_BUSHING = {"elastomer_damping_share": 0.5, "effects": [], "friction": {"law": "coulomb"}}
 
 _RESPONSES = ("torque_to_acceleration", "torque_to_pressure")
 
@@ -391,10 +387,7 @@ def changed_rig_text(
     damping = 0.02
     <BLANKLINE>
     """
-    tables: dict[str, Any] = {
-        "change": _nested(changes),
-        "tolerances": _nested(tolerances),
-    }
+    tables: dict[str, Any] = {"change": _nested(changes), "tolerances": _nested(tolerances)}
     content: dict[str, Any] = {"base": base, "effects": [str(spec) for spec in effects]}
     content |= {name: table for name, table in tables.items() if table}
     return toml_text(_rounded(content), notes)

@@ -27,13 +27,7 @@ CHANNEL_UNITS = {
 }
 """SI unit of the samples by kind of channel."""
 
-SI_UNITS = {
-    **CHANNEL_UNITS,
-    "time": "s",
-    "frequency": "Hz",
-    "displacement": "m",
-    "velocity": "m/s",
-}
+SI_UNITS = {**CHANNEL_UNITS, "time": "s", "frequency": "Hz", "displacement": "m", "velocity": "m/s"}
 """SI unit by quantity."""
 
 _IN_SI = {

@@ -155,11 +155,7 @@ def noise_floor(spectrum: Spectrum) -> NDArray[np.float64]:
 
 
 def find_lines(
-    spectrum: Spectrum,
-    *,
-    low: float,
-    high: float,
-    floor: NDArray[np.float64] | None = None,
+    spectrum: Spectrum, *, low: float, high: float, floor: NDArray[np.float64] | None = None
 ) -> Lines:
     """Find the discrete lines of a spectrum between two frequencies.
 

@@ -21,11 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from features.kernels.conditioning import (
-    NOTHING,
-    WORKING_LIMIT,
-    checked_signal,
-)
+from features.kernels.conditioning import NOTHING, WORKING_LIMIT, checked_signal
 from features.kernels.spectra import parabola_tops
 from models.show import short_repr
 

@@ -61,12 +61,7 @@ from models.structure.beams import (
     beam_structure,
 )
 from models.structure.modal import add_ringing
-from models.structure.plate import (
-    PlateModes,
-    acceleration_model,
-    plate_modes,
-    pressure_response,
-)
+from models.structure.plate import PlateModes, acceleration_model, plate_modes, pressure_response
 from models.transfer_functions.measured import with_measured
 
 HIGHEST_BEAM_FREQUENCY = 40e3
@@ -86,11 +81,7 @@ _TURNOVER, _DAMPING = 0.774, 0.575
 
 
 def impulse_responses(
-    rig: Rig,
-    interference: float,
-    support_stiffness: float,
-    rate: float,
-    seconds: float = 0.7,
+    rig: Rig, interference: float, support_stiffness: float, rate: float, seconds: float = 0.7
 ) -> ImpulseResponses:
     """Return the impulse responses of a rig at one operating condition.
 

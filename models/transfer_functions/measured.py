@@ -29,11 +29,7 @@ from models.errors import ParameterError
 from models.radiation.impulse_responses import ImpulseResponses
 from models.schema import ReadBy
 from models.transfer_functions.files import read_transfer_function
-from models.transfer_functions.transfer_function import (
-    TransferFunction,
-    check_band,
-    trusted_band,
-)
+from models.transfer_functions.transfer_function import TransferFunction, check_band, trusted_band
 
 BAND = 0.45
 """Share of the sampling rate up to which lines are used, as for modes."""

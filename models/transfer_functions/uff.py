@@ -26,13 +26,7 @@ UFF_ENDINGS = (".uff", ".unv")
 TIME_RESPONSE, FREQUENCY_RESPONSE, COHERENCE = 1, 4, 6
 """Function types of dataset 58."""
 
-_DATA_TYPES = {
-    "": 0,
-    "Pa": 15,
-    "m/s^2": 12,
-    "N": 13,
-    "N m": 13,
-}
+_DATA_TYPES = {"": 0, "Pa": 15, "m/s^2": 12, "N": 13, "N m": 13}
 """Specific data type by unit; 1 (general) for others."""
 
 _TIME, _FREQUENCY = 17, 18

@@ -13,10 +13,7 @@ from noise.commands.options import Option, check_folder
 _DEFAULT_OUT = "bushing-noise-demo"
 
 
-OPTIONS = (
-    Option("--out FOLDER", Path, Path(_DEFAULT_OUT)),
-    Option("--no-browser"),
-)
+OPTIONS = (Option("--out FOLDER", Path, Path(_DEFAULT_OUT)), Option("--no-browser"))
 
 
 def run(options: Namespace) -> int:

@@ -274,23 +274,14 @@ def _add(parser: argparse._ActionsContainer, row: Option, texts: Mapping[str, st
     )
 
 
-COMMON = (
-    Option("--seed N", whole_number(0), 0),
-    (
-        Option("--quiet"),
-        Option("--verbose"),
-    ),
-)
+COMMON = (Option("--seed N", whole_number(0), 0), (Option("--quiet"), Option("--verbose")))
 """Options of all commands."""
 
 CHANGE = Option("--change NAME=AMOUNT", change, repeated=True)
 """``--change`` of all commands that take a rig."""
 
 CALIBRATION = (
-    (
-        Option("--full-scale PA", number(above=0.0)),
-        Option("--calibrator TONE", Path),
-    ),
+    (Option("--full-scale PA", number(above=0.0)), Option("--calibrator TONE", Path)),
     Option("--level DB", number(least=40.0, most=170.0)),
 )
 """Calibration of plain sound files; see `full_scale_of`."""

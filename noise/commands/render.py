@@ -52,10 +52,7 @@ OPTIONS = (
     Option("--out AUDIO.wav|FOLDER", Path, required=True),
     Option("--ab"),
     Option("--gap S", number(least=0.0, most=60.0), 0.5),
-    (
-        Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)),
-        Option("--match-loudness"),
-    ),
+    (Option("--pascal-per-full-scale PA", number(above=0.0, most=1e9)), Option("--match-loudness")),
     Option("--band LOW..HIGH", _band),
     *CALIBRATION,
     CONDITION,

@@ -7,13 +7,7 @@ from pathlib import Path
 
 from noise.base.files import check_target
 from noise.base.progress import counted, note, report, say
-from noise.commands.options import (
-    CALIBRATION,
-    Option,
-    full_scale_of,
-    number,
-    refuse,
-)
+from noise.commands.options import CALIBRATION, Option, full_scale_of, number, refuse
 
 OPTIONS = (
     Option("paths PATH", Path, count="+"),

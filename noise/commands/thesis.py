@@ -32,13 +32,7 @@ def run(options: Namespace) -> int:
         check_target(out)
     say("preparing")
     from noise.thesis.runs import constant_note
-    from noise.thesis.table import (
-        COLUMNS,
-        group_names,
-        thesis_page,
-        thesis_rows,
-        verdict_counts,
-    )
+    from noise.thesis.table import COLUMNS, group_names, thesis_page, thesis_rows, verdict_counts
 
     rows = thesis_rows(track(group_names(), "computing", unit="row group"))
     if out is not None and is_page:

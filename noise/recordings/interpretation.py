@@ -150,11 +150,7 @@ def check_finite(
 
 
 def _calibrated(
-    path: Path,
-    raw: RawRecording,
-    sidecar: Sidecar,
-    full_scale: float | None,
-    notes: list[str],
+    path: Path, raw: RawRecording, sidecar: Sidecar, full_scale: float | None, notes: list[str]
 ) -> tuple[tuple[Channel, ...], bool]:
     """Return channels with the value of full scale, and whether all of them have one."""
     texts = (raw.description, path.name, raw.comment)

@@ -127,11 +127,7 @@ def with_full_scale(full_scale: float) -> str:
 
 
 def wav_bytes(
-    fractions: NDArray[np.float64],
-    rate: int,
-    bits: int,
-    *,
-    description: str = "",
+    fractions: NDArray[np.float64], rate: int, bits: int, *, description: str = ""
 ) -> bytes:
     """Encode a mono sound as a WAV file.
 

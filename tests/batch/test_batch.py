@@ -9,12 +9,7 @@ from contextlib import closing
 import pytest
 
 from models.errors import ParameterError
-from noise.batch.journal import (
-    Journal,
-    journal_path,
-    open_journal,
-    temporary_journal,
-)
+from noise.batch.journal import Journal, journal_path, open_journal, temporary_journal
 from noise.batch.work import DIED, JobResult, file_identity, perform_all
 from tests.helpers.batch_work import Counting, in_order, make_jobs
 

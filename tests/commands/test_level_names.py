@@ -26,7 +26,7 @@ def hiss(seconds, rms=0.05, rate=48_000):
 SOUNDS = {
     "hum below the noise": lambda: (
         hiss(2.0, 0.01) + 0.5 * np.sin(2.0 * np.pi * 50.0 * np.arange(2 * 48_000) / 48_000)
-    ),
+    )
 }
 
 

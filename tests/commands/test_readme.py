@@ -32,12 +32,7 @@ from tests.helpers.readme_blocks import (
 BLOCKS = [block for page in (README, *PAGES) for block in blocks(readme(page=page))]
 COMMAND_LINES = [line for block in BLOCKS if block.kind == "commands" for line in block.commands]
 
-SCREEN_TABLES = (
-    tables._MAP,
-    tables._CRITICAL,
-    tables._DESIGNS,
-    tables._ADVICE,
-)
+SCREEN_TABLES = (tables._MAP, tables._CRITICAL, tables._DESIGNS, tables._ADVICE)
 
 DEAR = ("diagnose", "identify", "screen", "thesis", "train")
 """Commands that take a minute or more."""

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import coherence, csd, welch
 
-from features.modal.hammer import (
-    Hit,
-    check_hit,
-    estimate_transfer_function,
-)
+from features.modal.hammer import Hit, check_hit, estimate_transfer_function
 from models.errors import RecordingError
 
 RATE = 20e3

@@ -120,9 +120,7 @@ def boundary_conditions(
 
 
 def waves_at(
-    wave: NDArray[np.complex128],
-    position: NDArray[np.float64] | float,
-    derivative: int,
+    wave: NDArray[np.complex128], position: NDArray[np.float64] | float, derivative: int
 ) -> NDArray[np.complex128]:
     """Return the four waves, or one of their derivatives by the position.
 

@@ -12,11 +12,7 @@ import numpy as np
 import pytest
 
 from models.errors import ParameterError, RecordingError
-from models.foreign_file import (
-    read_arrays,
-    reading,
-    refusing,
-)
+from models.foreign_file import read_arrays, reading, refusing
 
 
 def refusal(path, read=read_arrays, what="NPZ file"):

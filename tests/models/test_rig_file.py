@@ -158,10 +158,7 @@ def fit(old, new):
         # bushing
         ("[temperature]\nreference_C = -30\nglass_transition_C = -20", ("not above glass",)),
         ("[sleeve]\nhardness_shore_A = 60\nyoungs_modulus_MPa = 3", ("not both",)),
-        (
-            "[sleeve]\nhardness_shore_A = 90",
-            ("must be a number from 20 to 80",),
-        ),
+        ("[sleeve]\nhardness_shore_A = 90", ("must be a number from 20 to 80",)),
         # changes
         (FIT + "[change]\nwall_mm = 6", ("wall needs a [sleeve] table",)),
         ('[change]\ndampin = "x2"', ("did you mean 'damping'", "slip_pulse.amplitude")),

@@ -122,12 +122,7 @@ def test_a_universal_response_is_converted_by_what_it_states(
 @pytest.mark.parametrize(
     ("unit", "data_type", "more", "message"),
     [
-        (
-            "m/s^2",
-            12,
-            {"units": (5, 1e3, 1e3)},
-            "by the units of the file (dataset 164) 1 is",
-        ),
+        ("m/s^2", 12, {"units": (5, 1e3, 1e3)}, "by the units of the file (dataset 164) 1 is"),
         ("m/s^2", 15, {}, "'m/s^2', but has the data type of pressure"),
         ("V", 12, {}, "output_unit is 'V'; it must be 'm/s^2'"),
         ("m/s^2", 12, {"per": "N m"}, "input_unit is 'N m'; it must be 'N'"),

@@ -307,10 +307,7 @@ def test_the_same_samples_are_the_same_recording_in_any_container(ending, tmp_pa
 # --- angles that wrap ---------------------------------------------------------------------------
 
 TURN = 2 * np.pi
-WRAPS = {
-    "a turn": (lambda a: a % TURN, TURN),
-    "backwards": (lambda a: -a % TURN, TURN),
-}
+WRAPS = {"a turn": (lambda a: a % TURN, TURN), "backwards": (lambda a: -a % TURN, TURN)}
 
 
 @pytest.mark.parametrize("speed", [5.0, 700.0])

@@ -15,13 +15,7 @@ from models.errors import RecordingError
 from models.recording import Channel, Recording
 from models.units import CHANNEL_UNITS
 from noise.recordings import read_recording, write_recording
-from noise.recordings.sidecar import (
-    Sidecar,
-    find_sidecar,
-    parse_sidecar,
-    sidecar_of,
-    sidecar_text,
-)
+from noise.recordings.sidecar import Sidecar, find_sidecar, parse_sidecar, sidecar_of, sidecar_text
 
 FULL = {
     "channels": [

@@ -68,9 +68,7 @@ def test_a_whole_file_gives_its_samples_and_one_that_is_cut_is_refused(
 ):
     t = np.arange(150_000)[:, None] / RATE
     data = encoded(
-        0.5 * np.sin(2 * np.pi * 500 * t + np.arange(2)),
-        format=ending.upper(),
-        subtype=subtype,
+        0.5 * np.sin(2 * np.pi * 500 * t + np.arange(2)), format=ending.upper(), subtype=subtype
     )
     raw = read(tmp_path, data, ending)
     assert (raw.rate, raw.fractional, raw.notes) == (RATE, fractional, ())
@@ -109,11 +107,7 @@ def headless(data):
 
 
 @pytest.mark.parametrize(
-    ("mode", "rate", "n_tracks"),
-    [
-        ("VARIABLE", 48000, 1),
-        ("CONSTANT", 44100, 2),
-    ],
+    ("mode", "rate", "n_tracks"), [("VARIABLE", 48000, 1), ("CONSTANT", 44100, 2)]
 )
 def test_an_mp3_without_a_header_is_read_to_its_end(tmp_path, mode, rate, n_tracks):
     raw = read(tmp_path, headless(mp3(mode, rate, n_tracks)), "mp3")
@@ -190,10 +184,7 @@ def fmt(bits, *, code=1, extensible=False):
 X = tone(1.0)[:, 0]
 AS_16 = np.round(X * 32767).astype("<i2").tobytes()
 AS_FLOAT = X.astype("<f4").tobytes()
-KINDS = {
-    "16 bits": (fmt(16), AS_16),
-    "float": (fmt(32, code=3), AS_FLOAT),
-}
+KINDS = {"16 bits": (fmt(16), AS_16), "float": (fmt(32, code=3), AS_FLOAT)}
 LONG = 0xFFFFFFFF
 HEAD = fmt(16)
 
