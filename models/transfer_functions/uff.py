@@ -130,7 +130,7 @@ def read_uff_functions(path: Path, *kinds: int) -> list[UffFunction]:
 
 
 def write_uff_functions(path: Path, functions: Iterable[UffFunction]) -> None:
-    """Write functions as datasets 58 in text, with twelve digits per value.
+    """Write functions of frequency as datasets 58 in text, with twelve digits per value.
 
     The binary form is smaller, but the library announces half the bytes of a complex function,
     which other readers rely on.
@@ -251,11 +251,10 @@ def _whole(step: float) -> float:
 
 def _dataset(function: UffFunction) -> dict[str, Any]:
     n = function.x.size
-    spectral = function.kind != TIME_RESPONSE
     step = float((function.x[-1] - function.x[0]) / (n - 1))
     even = np.allclose(np.diff(function.x), step, rtol=1e-6, atol=0.0)
     rotation = function.denominator_unit == "N m"
-    data: dict[str, Any] = {
+    return {
         "type": 58,
         "binary": 0,
         "func_type": function.kind,
@@ -269,12 +268,11 @@ def _dataset(function: UffFunction) -> dict[str, Any]:
         "abscissa_spacing": int(even),
         "abscissa_min": float(function.x[0]),
         "abscissa_inc": step,
-        "abscissa_spec_data_type": _FREQUENCY if spectral else _TIME,
-        "abscissa_axis_lab": "frequency" if spectral else "time",
-        "abscissa_axis_units_lab": "Hz" if spectral else "s",
+        "abscissa_spec_data_type": _FREQUENCY,
+        "abscissa_axis_lab": "frequency",
+        "abscissa_axis_units_lab": "Hz",
         "ordinate_spec_data_type": _DATA_TYPES.get(function.unit, 1),
         "ordinate_axis_units_lab": function.unit or "NONE",
         "orddenom_spec_data_type": _DATA_TYPES.get(function.denominator_unit, 1),
         "orddenom_axis_units_lab": function.denominator_unit or "NONE",
     }
-    return data
