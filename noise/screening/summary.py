@@ -30,9 +30,8 @@ _CHANGES, _LIMITS = 3, 2
 """Changes that are named: of those that end a noise, and of those that reach a limit."""
 
 RANKING_RULE = (
-    "Rank 1 has the lowest mean loudness of its use, in which 40 dB(A) counts 1 sone, 10 dB more "
-    "twice as much and silence 0, so that a design that is noisy more often but fainter may come "
-    "first"
+    "Rank 1 has the lowest mean loudness of its use: 40 dB(A) counts 1 sone, 10 dB more twice as "
+    "much, silence 0. So a design that is noisy more often but fainter may come first"
 )
 """Explanation of the number by which designs are ranked."""
 
