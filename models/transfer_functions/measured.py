@@ -92,7 +92,7 @@ def measured_with(
     Examples
     --------
     >>> entries = (MeasuredResponse(2214.0), MeasuredResponse(3745.0))
-    >>> measured_with(entries, 3745.1) is entries[1], measured_with(entries, math.inf)
+    >>> measured_with(entries, 3745.1) is entries[1], measured_with(entries, 9999.0)
     (True, None)
     """
     with_it = (
