@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from features.kernels.levels import band_levels, band_power
-from features.kernels.slips import torque_slips
 from features.kernels.spectra import autospectrum
 from features.kernels.weighting import a_weighted_level
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
@@ -51,8 +50,7 @@ CURVES = {
 """Near-black, vermilion and blue (Okabe and Ito, Color universal design, 2008), and dashes."""
 
 _LOWEST, _HIGHEST = 25.0, 15e3  # mid-band frequencies [Hz]
-_SHORTEST, _LONGEST = 0.03, 0.05  # of the cycles shown [s]
-_CYCLES = 3.0
+_SHOWN = 0.04  # of the torque [s]
 _RESOLUTION = 1.0  # [Hz]: three bins in the lowest band
 _LEAST_BINS = 2.0
 _RANGE = 70.0  # of a level axis at most [dB]
@@ -141,45 +139,32 @@ def _signal(recording: Recording, kind: str) -> NDArray[np.float64] | None:
 def _line(role: str, x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
     """Return a curve in the style of its role."""
     curve = CURVES[role]
-    style = "dashes" if curve.dashed else "-"
+    style = (0.0, (4.0, 2.0)) if curve.dashed else "-"
     return Line(x, y, curve.colour, curve.label, curve.width, style)
 
 
 def _cycles(runs: dict[str, Recording]) -> Panel:
-    signals = {
-        name: (signal, recording.rate)
-        for name, recording in runs.items()
-        if (signal := _signal(recording, "torque")) is not None
-    }
-    length = _length(*signals["measured"]) if "measured" in signals else _LONGEST
-    lines, unaligned, low, high = [], [], np.inf, -np.inf
-    for name, (signal, rate) in signals.items():
-        start, aligned = cycle_window(signal, rate, length)
+    lines, slips, low, high = [], True, np.inf, -np.inf
+    for name, recording in runs.items():
+        signal, rate = _signal(recording, "torque"), recording.rate
+        if signal is None:
+            continue
+        start, aligned = cycle_window(signal, rate, _SHOWN)
         first = round(start * rate)
-        piece = signal[first : first + round(length * rate) + 1]
-        time = (np.arange(first, first + piece.size) / rate - start - LEAD * length) * 1e3
+        piece = signal[first : first + round(_SHOWN * rate) + 1]
+        time = (np.arange(first, first + piece.size) / rate - start - LEAD * _SHOWN) * 1e3
         lines.append(_line(name, *thinned(time, piece, columns=COLUMNS)))
         low, high = min(low, float(piece.min())), max(high, float(piece.max()))
-        unaligned += [] if aligned else [CURVES[name].label]
-    title, across = "Torque, around a slip of each", "Time from the slip [ms]"
-    alt = f"Torque over {1e3 * length:.0f} ms around a slip, {low:.3g} to {high:.3g} Nm."
-    if unaligned:
-        text = f"no slip: {', '.join(unaligned)}"
-        across, alt = f"{across}; {text}", f"{alt} There is {text}."
-        if len(unaligned) == len(signals):
-            title, across = "Torque, in which nothing slips", "Time [ms]"
+        slips &= aligned
+    title, across = ("Torque", "Time [ms]")
+    if slips:
+        title, across = "Torque, around a slip of each", "Time from the slip [ms]"
     return lines_panel(
-        title, across, "Torque [Nm]", lines, alt,
-        across_ends=(-1e3 * LEAD * length, 1e3 * (1.0 - LEAD) * length),
+        title, across, "Torque [Nm]", lines,
+        f"{title}: {low:.3g} to {high:.3g} Nm over {1e3 * _SHOWN:.0f} ms.",
+        across_ends=(-1e3 * LEAD * _SHOWN, 1e3 * (1.0 - LEAD) * _SHOWN),
         up_ends=padded(low, high, 0.1),
     )  # fmt: skip
-
-
-def _length(torque: NDArray[np.float64], rate: float) -> float:
-    """Return the duration of about three cycles [s]."""
-    slips = torque_slips(torque, rate)
-    wanted = _CYCLES / slips.rate if slips.rate > 0.0 else _LONGEST
-    return float(min(max(wanted, _SHORTEST), _LONGEST, torque.size / rate))
 
 
 def _spectra(runs: dict[str, Recording], kind: str) -> Panel:

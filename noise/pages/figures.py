@@ -60,8 +60,8 @@ class Line:
     colour, label : str
     width : float
         [point]
-    style : str
-        Of matplotlib; "dashes" are long ones.
+    style : str or tuple
+        Of matplotlib.
     """
 
     x: NDArray[np.floating[Any]]
@@ -69,12 +69,10 @@ class Line:
     colour: str
     label: str = ""
     width: float = 1.5
-    style: str = "-"
+    style: str | tuple[float, tuple[float, float]] = "-"
 
 
 Ends = tuple[float, float]
-
-_STYLES: dict[str, Any] = {"": "none", "dashes": (0.0, (4.0, 2.0))}
 
 
 def lines_panel(
@@ -122,9 +120,8 @@ def lines_panel(
     axes.yaxis.set_label_coords(-0.19, 0.5)
     for one in lines:
         axes.plot(
-            one.x, one.y, color=one.colour, label=one.label or None, lw=one.width,
-            ls=_STYLES.get(one.style, one.style),
-        )  # fmt: skip
+            one.x, one.y, color=one.colour, label=one.label or None, lw=one.width, ls=one.style
+        )
     low, high = up_ends or axes.get_ylim()
     axes.set_ylim(low - room[0] * (high - low), high + room[1] * (high - low))
     if across_ends is not None:
