@@ -219,15 +219,12 @@ def _strongest_lags(correlation, n, best, period, second) -> None:
         begin = 1
         while begin < most and c[begin] > 0.1 * np.float64(power):
             begin += 1
-        highest = 0.0
         for lag in range(max(least, begin), min(most, n // 2)):
             if c[lag] > c[lag - 1] and c[lag] >= c[lag + 1]:
                 # Fewer samples overlap at a longer lag.
                 strength = (c[lag] / power) * (n / (n - lag))
-                if strength > highest:
-                    highest = strength
-                    if highest > _BETTER * best[w]:
-                        best[w], period[w] = highest, lag
+                if strength > _BETTER * best[w]:
+                    best[w], period[w] = strength, lag
         twice = 2 * period[w]
         if period[w] > 0 and twice + 1 < min(n, c.size):
             far = max(c[twice - 1], c[twice], c[twice + 1])

@@ -44,10 +44,7 @@ def run(options: Namespace) -> int:
             seed=options.seed,
             n_training=options.samples or N_TRAINING,
             added=added,
-            progress=lambda samples, total: track(
-                samples, "simulating", total=total, unit="training sample"
-            ),
-            growing=partial(_growing, progress),
+            progress=partial(_simulating, progress),
         )
         classifier.save(options.out)
     say(f"trained: {_scores(classifier.card)}")
@@ -83,10 +80,10 @@ def _own_samples(folders: Sequence[Path]) -> tuple[list[Sample], bool]:
     return samples, bool(refusals)
 
 
-def _growing(progress: Steps, fits: Iterable[int], total: int) -> Iterable[int]:
-    """Show the progress of the growing of trees."""
-    progress("growing trees, and scoring them on what they have not learned")
-    yield from track(fits, "growing trees", total=total, unit="fit")
+def _simulating(progress: Steps, samples: Iterable[Sample], total: int) -> Iterable[Sample]:
+    """Show the progress of the samples, and name the step that follows them."""
+    yield from track(samples, "simulating", total=total, unit="training sample")
+    progress("growing trees, and scoring them on what they have not learned, for some minutes")
 
 
 def _scores(card: Mapping[str, object]) -> str:

@@ -90,17 +90,14 @@ def label_rows(
     return [_row(name, blocks, segment, inference) for segment in segments]
 
 
-def segment_cells(segment: Segment) -> dict[str, object]:
-    """Return the cells of a segment without its condition, by `SEGMENT_COLUMNS`.
-
-    Examples
-    --------
-    >>> from noise.labels.segments import Segment
-    >>> quiet = Segment("all", 0.0, 2.0, "none", {"none": 0.9}, None, 31.234, None)
-    >>> segment_cells(quiet)["level_db"]
-    31.23
-    """
-    return {
+def _row(
+    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
+) -> dict[str, object]:
+    speed = segment_speed(blocks, segment.start, segment.end)
+    condition = replace(blocks.condition, speed=speed)
+    row: dict[str, object] = {
+        **dict.fromkeys(COLUMNS),
+        "file": name,
         "channel": segment.channel,
         "start_s": round(segment.start, 6),
         "end_s": round(segment.end, 6),
@@ -112,18 +109,6 @@ def segment_cells(segment: Segment) -> dict[str, object]:
         "l_afmax_dba": _rounded(segment.level_af_max, 2),
         "snr_dba": _rounded(segment.snr, 2),
         "level_dbfs": _rounded(segment.level_dbfs, 2),
-    }
-
-
-def _row(
-    name: str, blocks: RecordingBlocks, segment: Segment, inference: Inference | None
-) -> dict[str, object]:
-    speed = segment_speed(blocks, segment.start, segment.end)
-    condition = replace(blocks.condition, speed=speed)
-    row: dict[str, object] = {
-        **dict.fromkeys(COLUMNS),
-        "file": name,
-        **segment_cells(segment),
         "calibrated": blocks.calibrated,
         "material": condition.material,
         "material_source": "logged" if condition.material else "missing",
@@ -183,8 +168,7 @@ def _is_of_a_rig(blocks: RecordingBlocks) -> bool:
 
 def _in_unit(column: str, value: float | None) -> float | None:
     """Return a value in the unit of its column."""
-    millimetres = value is not None and column.endswith("_mm")
-    return _rounded(1e3 * value if millimetres and value is not None else value, 6)
+    return _rounded(1e3 * value if value is not None and column.endswith("_mm") else value, 6)
 
 
 def _inferred_in_unit(column: str, value: float) -> float | None:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +30,6 @@ from noise.labels.windows import (
     tracks,
     window_features,
 )
-
-if TYPE_CHECKING:
-    pass
 
 
 @short_repr

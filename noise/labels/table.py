@@ -30,16 +30,9 @@ CONDITIONS = {
 }
 """Fields of a condition by column."""
 
-SEGMENT_COLUMNS = (
-    "channel", "start_s", "end_s", "label",
-    *(f"p_{label}" for label in LABELS),
-    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba",
-    "level_dbfs",
-)  # fmt: skip
-"""Columns of a segment without its condition."""
-
 COLUMNS = (
-    "file", *SEGMENT_COLUMNS, "calibrated",
+    "file", "channel", "start_s", "end_s", "label", *(f"p_{label}" for label in LABELS),
+    "frequency_hz", "level_db", "level_dba", "l_afmax_dba", "snr_dba", "level_dbfs", "calibrated",
     *(f"{name}{part}" for name in CONDITIONS for part in ("", "_low", "_high", "_source")),
     "material", "material_source", "label_source", "note", "error",
 )  # fmt: skip
@@ -267,24 +260,18 @@ def _value(row: Mapping[str, object], column: str, where: str) -> object:
     if column in _TEXTS:
         return text or None
     if column == "calibrated":
-        return cell_truth(row, column, where)
+        if text.lower() not in _TRUE | _FALSE:
+            raise RecordingError(f"{where} has {column} {text!r}, expected true or false")
+        return text.lower() in _TRUE
     if text in ("fixed", "inf") and column.startswith(_SUPPORT):
         return math.inf
-    return cell_number(row, column, where)
-
-
-def cell_truth(row: Mapping[str, object], column: str, where: str) -> bool:
-    """Return the truth value of a cell, as spreadsheets in European languages write it.
-
-    Examples
-    --------
-    >>> cell_truth({"calibrated": "WAHR"}, "calibrated", "row 1")
-    True
-    """
-    text = str(row[column]).strip()
-    if text.lower() not in _TRUE | _FALSE:
-        raise RecordingError(f"{where} has {column} {text!r}, expected true or false")
-    return text.lower() in _TRUE
+    try:
+        number = float(str(value))
+    except ValueError:
+        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
+    if abs(number) > _LARGEST:
+        raise RecordingError(f"{where} has {column} {value!r}, expected a number that is possible")
+    return None if math.isnan(number) else number
 
 
 def check_name(value: object, column: str, where: str) -> None:
@@ -308,29 +295,3 @@ def check_name(value: object, column: str, where: str) -> None:
         possible = False
     if not possible:
         raise RecordingError(f"{where} has {column} {value!r}, which is the name of none")
-
-
-def cell_number(row: Mapping[str, object], column: str, where: str) -> float | None:
-    """Return the number in a cell, in the unit of its column [-]; None for an empty cell.
-
-    Raises
-    ------
-    RecordingError
-        The cell is no number; the message contains its place.
-
-    Examples
-    --------
-    >>> row = {"speed_rad_s": "5", "level_db": ""}
-    >>> [cell_number(row, column, "labels.csv: row 1") for column in row]
-    [5.0, None]
-    """
-    value = row.get(column)
-    if value is None or value == "":
-        return None
-    try:
-        number = float(str(value))
-    except ValueError:
-        raise RecordingError(f"{where} has {column} {value!r}, expected a number") from None
-    if abs(number) > _LARGEST:
-        raise RecordingError(f"{where} has {column} {value!r}, expected a number that is possible")
-    return None if math.isnan(number) else number

@@ -1,9 +1,5 @@
 """Windows of a recording: the same numbers at any rate and gain, in memory or from a file."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import soundfile
@@ -144,20 +140,6 @@ def test_from_a_file_in_blocks_comes_the_same_as_from_memory(tmp_path, monkeypat
     assert parts.frames.tobytes() == whole.frames.tobytes()
 
 
-@pytest.mark.slow
-def test_features_of_code_just_compiled_are_those_of_code_from_the_cache(tmp_path):
-    code = (
-        "import numpy as np\n"
-        "from features.windows.frames import describe_frames\n"
-        "sound = np.random.default_rng(0).standard_normal(16000).astype(np.float32)\n"
-        "print(describe_frames(sound, 7e3).values.tobytes().hex())"
-    )
-    call = [sys.executable, "-c", code]
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    first, second = (subprocess.check_output(call, env=environment) for _ in range(2))
-    assert first == second
-
-
 def test_channels_that_are_not_there_have_no_features():
     sound = noise(1.0, 30_000)
     both = window_features(RecordingBlocks.of(recording(sound, 2.0 * sound, rate=30e3)))
@@ -187,13 +169,6 @@ def test_a_short_doubt_is_no_segment_but_a_long_one_is():
     assert not viterbi_path(np.array([sure] * 4 + [doubt] * 2 + [sure] * 4)).any()
     course = viterbi_path(np.array([sure] * 4 + [other] * 4 + [sure] * 4))
     assert course.tolist() == [0] * 4 + [1] * 4 + [0] * 4
-
-
-def test_levels_of_what_has_no_square_are_levels_all_the_same():
-    sound = recording(1e200 * np.sin(np.arange(1000)), rate=1e3)
-    assert rms_level(RecordingBlocks.of(sound), 0, 0, 1000) == pytest.approx(3996.99, abs=0.01)
-    constant = recording(np.full(1000, 0.5), rate=1e3)
-    assert rms_level(RecordingBlocks.of(constant), 0, 0, 1000) is None
 
 
 def tone_in_noise(n, rate=48_000):

@@ -8,7 +8,6 @@ from noise.training.classifier.recorder import (
     RATES,
     augmented,
     coded,
-    levelled,
     through_a_microphone,
 )
 from noise.training.draws import coloured_noise
@@ -42,14 +41,7 @@ def test_a_microphone_has_a_band(kind, above):
     assert power[hertz > above].mean() < 0.2 * middle
 
 
-def test_an_automatic_gain_brings_loud_and_quiet_closer():
-    tone = np.sin(0.3 * np.arange(96_000)) * np.repeat([0.01, 1.0], 48_000)
-    clip = levelled(tone, 48e3, np.random.default_rng(2))
-    before = tone[80_000:].std() / tone[20_000:40_000].std()
-    assert clip[80_000:].std() / clip[20_000:40_000].std() < 0.8 * before
-
-
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_codec_keeps_a_tone_and_its_length(seed):
     tone = 0.5 * np.sin(2 * np.pi * 1000.0 * np.arange(30_000) / 44_100)
     clip = coded(tone, 44_100, np.random.default_rng(seed))

@@ -79,11 +79,3 @@ def test_groups_come_in_their_shares(monkeypatch):
         groups[source.partition(":")[0]] += count
     for group, share in SHARES.items():
         assert groups[group] / 6000 == pytest.approx(share, abs=0.03)
-
-
-@pytest.mark.slow
-def test_bushings_of_every_noise_and_material_occur():
-    drawn = [random_run(np.random.default_rng(seed)) for seed in range(150)]
-    labels = Counter(d.label for d in drawn)
-    assert min(labels[name] for name in ("creak", "squawk", "squeal", "none")) >= 12
-    assert len({d.run.recording.condition.material for d in drawn}) == 6

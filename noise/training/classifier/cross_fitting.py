@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -170,17 +170,13 @@ class LeftOut(NamedTuple):
     part: NDArray[np.int64]
 
 
-def cross_fitted(
-    sounds: Sequence[Sample], seed: int, fits: Iterator[object]
-) -> tuple[Classifier, LeftOut]:
+def cross_fitted(sounds: Sequence[Sample], seed: int) -> tuple[Classifier, LeftOut]:
     """Train a classifier: trees, calibrations and thresholds.
 
     Parameters
     ----------
     sounds : sequence of Sample
     seed : int
-    fits : iterator
-        Iterator for a progress bar, advanced at each of the `N_FOLDS` + 1 fits.
 
     Returns
     -------
@@ -197,7 +193,6 @@ def cross_fitted(
     alone: list[Array] = [np.empty(0)] * len(sounds)
     together: list[Array | None] = [None] * len(sounds)
     for k, trees in enumerate(growing):
-        next(fits, None)
         for i in np.flatnonzero(part == k).tolist():
             features = sounds[i].features
             sound = masked(features, _KINDS if sounds[i].real else _SUBSETS[0])

@@ -36,12 +36,7 @@ from noise.classifier.model import Classifier
 from noise.labels.segmentation import NOISES
 from noise.labels.windows import FEATURE_NAMES, window_features
 from noise.recordings import read_recording
-from noise.training.classifier.cross_fitting import (
-    N_FOLDS,
-    cross_fitted,
-    left_out_scores,
-    named_as,
-)
+from noise.training.classifier.cross_fitting import cross_fitted, left_out_scores, named_as
 from noise.training.classifier.own_recordings import own_card
 from noise.training.classifier.recorder import augmented
 from noise.training.classifier.samples import (
@@ -197,7 +192,6 @@ def train(
     n_training: int = N_TRAINING,
     added: Sequence[Sample] = (),
     progress: Callable[[Iterable[Sample], int], Iterable[Sample]] | None = None,
-    growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
     """Train a classifier; the same seed gives the same classifier.
 
@@ -210,8 +204,6 @@ def train(
         Samples of the user's recordings (`noise.training.classifier.own_recordings`).
     progress : callable, optional
         ``progress(samples, total)`` yields the samples and shows the progress.
-    growing : callable, optional
-        Likewise for the fits of trees, which take some minutes.
 
     Returns
     -------
@@ -241,7 +233,6 @@ def train(
         seed=seed,
         real=real,
         added=added,
-        growing=growing,
     )
     card = {
         "seed": seed,
@@ -257,7 +248,6 @@ def learn(
     seed: int,
     real: Sequence[Sample] = (),
     added: Sequence[Sample] = (),
-    growing: Callable[[Iterable[int], int], Iterable[int]] | None = None,
 ) -> Classifier:
     """Train on samples and recorded sounds, and score each by what was learned without it.
 
@@ -272,10 +262,7 @@ def learn(
     if absent:
         raise ParameterError(f"{len(samples)} training samples hold no {absent}; draw more of them")
     sounds = [*training, *real, *added]
-    n_fits = N_FOLDS + 1
-    fits = iter(growing(range(n_fits), n_fits) if growing else range(n_fits))
-    classifier, left_out = cross_fitted(sounds, seed, fits)
-    next(fits, None)  # completes the progress bar
+    classifier, left_out = cross_fitted(sounds, seed)
     card: dict[str, object] = {
         "samples": _counts(training),
         **left_out_scores(sounds, left_out, classifier.thresholds),
