@@ -322,5 +322,5 @@ def full_scale_of(rows: Sequence[Row]) -> float | None:
     for row in rows:
         level, level_dbfs = row.get("level_db"), row.get("level_dbfs")
         if isinstance(level, float) and isinstance(level_dbfs, float):
-            return REFERENCE_PRESSURE * 10.0 ** ((level - level_dbfs) / 20.0)
+            return float(REFERENCE_PRESSURE * 10.0 ** ((level - level_dbfs) / 20.0))
     return None

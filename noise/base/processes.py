@@ -178,9 +178,7 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _exit_with_starter(
-    setup: Callable[..., object] | None = None, arguments: tuple[Any, ...] = ()
-) -> None:
+def _exit_with_starter(setup: Callable[..., object] | None, arguments: tuple[Any, ...]) -> None:
     """Start a thread that exits the process when the process that started it has ended."""
     if setup is not None:
         setup(*arguments)

@@ -255,6 +255,7 @@ def _or(value: _T | None, default: _T) -> _T:
 def _rig(options: Namespace, library: Mapping[str, Effect], rig: Rig | None) -> Rig:
     """Return the rig of the options with their effects and changes."""
     from models.rig_file import load_material_rig, load_rig
+    from sim.effects.effect import activated
 
     if options.rig is None:
         with naming("--material: "):
@@ -268,26 +269,15 @@ def _rig(options: Namespace, library: Mapping[str, Effect], rig: Rig | None) -> 
                 f"--material {material} contradicts --rig {options.rig}, whose material is "
                 f"{rig.material}; leave --material out, or change the file"
             )
-    rig = replace(rig, effects=_effects(rig.effects, options.effect or (), library))
-    return changed(rig, options.change)
-
-
-def _effects(
-    rig_effects: tuple[LawSpec, ...],
-    options: list[LawSpec] | tuple[()],
-    library: Mapping[str, Effect],
-) -> tuple[LawSpec, ...]:
-    """Return the effects of the rig, replaced and extended by those of ``--effect``."""
-    from sim.effects.effect import activated
-
-    names = [spec.name for spec in options]
-    for name in names:
-        if names.count(name) > 1:
-            raise ParameterError(f"--effect {name} is given twice; give all its keys at once")
-    for spec in options:
+    effects = {spec.name: spec for spec in rig.effects}
+    stated: dict[str, LawSpec] = {}
+    for spec in options.effect or ():
+        if spec.name in stated:
+            raise ParameterError(f"--effect {spec.name} is given twice; give all its keys at once")
         with naming("--effect: "):
             activated((spec,), library)
-    return tuple({spec.name: spec for spec in (*rig_effects, *options)}.values())
+        stated[spec.name] = spec
+    return changed(replace(rig, effects=tuple((effects | stated).values())), options.change)
 
 
 def shaft_motion(options: Namespace, seconds: float) -> tuple[ShaftMotion, str]:

@@ -41,13 +41,17 @@ def run(options: Namespace) -> int:
     jobs = find_jobs(options.paths)
     from noise.labels.corrections import sign_corrections, with_corrections
     from noise.labels.labelling import Labelling
-    from noise.labels.summary import result_lines
+    from noise.labels.summary import ASSUMED, assumes_material, result_lines
 
     if options.out is not None:
         sign_corrections(options.out, [job.name for job in jobs])
 
     def export(rows: list[dict[str, object]]) -> list[Path]:
-        _note_assumed(rows)
+        if number := len({row["file"] for row in rows if assumes_material(row)}):
+            note(
+                f"conditions of {counted(number, 'recording')} are inferred {ASSUMED}: no material "
+                "is logged"
+            )
         return _export(options, rows)
 
     work = Labelling(
@@ -70,18 +74,6 @@ def _note_false_names(counts: Mapping[str, Any], sensitivity: float) -> None:
             f"at a sensitivity of {nearest}, real background sounds of these surroundings got "
             f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} "
             f"at 95 %: {rate['names']} in {rate['hours']:g} h)"
-        )
-
-
-def _note_assumed(rows: list[dict[str, object]]) -> None:
-    """Print the assumption behind inferred conditions without a logged material."""
-    from noise.labels.summary import ASSUMED, assumes_material
-
-    number = len({row["file"] for row in rows if assumes_material(row)})
-    if number:
-        note(
-            f"conditions of {counted(number, 'recording')} are inferred {ASSUMED}: no material is "
-            "logged"
         )
 
 

@@ -117,7 +117,7 @@ def _sources(options: Namespace) -> list[_Source]:
             sources += _recorded(Path(text), full_scale, names)
         else:
             name = Path(text).stem if text else options.out.name.removesuffix(".wav")
-            source, its_notes = _run(_unique(name, names), _with_rig(options, text))
+            source, its_notes = _run(_unique(name, names), options, text)
             sources.append(source)
             notes += its_notes
     note(*dict.fromkeys(notes))
@@ -163,19 +163,14 @@ def _read(path: Path, full_scale: float | None) -> Recording:
         return pressure_recording(recording)
 
 
-def _with_rig(options: Namespace, text: str) -> Namespace:
-    """Return the options of a condition with a rig file or a material as the rig, if stated."""
-    if not text:
-        return options
-    if options.rig is not None:
-        raise ParameterError(f"--rig {options.rig} and {text} are both rigs; give one")
-    return Namespace(**(vars(options) | {"rig": Path(text)}))
-
-
-def _run(name: str, options: Namespace) -> tuple[_Source, tuple[str, ...]]:
-    """Return the source of a simulated run, and its notes."""
+def _run(name: str, options: Namespace, rig: str) -> tuple[_Source, tuple[str, ...]]:
+    """Return the source of a simulated run, and its notes; `rig` is a file, a material or empty."""
     from noise.audio.sound import RATE
 
+    if rig and options.rig is not None:
+        raise ParameterError(f"--rig {options.rig} and {rig} are both rigs; give one")
+    if rig:
+        options = Namespace(**(vars(options) | {"rig": Path(rig)}))
     # At the rate of the sound: the rate of the rig would cut a creak off at 15 kHz.
     arguments, notes = run_arguments(options, RATE)
 
