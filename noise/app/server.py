@@ -97,11 +97,10 @@ def create_app(
     ]
     for module in _ROUTES:
         routes += routes_of(module)
-    design = partial(routes_of, "noise.app.design_view")
+    make: Callable[[], Sequence[BaseRoute]] = partial(routes_of, "noise.app.design_view")
     if opened.rigs:  # what is wrong with a rig that is named is told where it was named
-        made = design()
-        design = lambda: made  # noqa: E731
-    routes.append(Mount("/api/design", lazy_app(design)))
+        make = partial(list, make())
+    routes.append(Mount("/api/design", lazy_app(make)))
     app = Starlette(routes=routes, exception_handlers={BushingNoiseError: _told})
     return Gate(app, token, port)
 

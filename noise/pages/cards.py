@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.recording import REFERENCE_PRESSURE
+from noise.audio.sound import RATE
 from noise.audio.spectrogram import HIGHEST, LOWEST, spectrogram
 from noise.labels.summary import ASSUMED, assumes_material
-from noise.pages.clips import RATE, Clip, Entry, Row, number_or
+from noise.pages.clips import Clip, Entry, Row, number_or
 
 
 def round_ticks(low: float, high: float, most: int) -> list[float]:

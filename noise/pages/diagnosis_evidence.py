@@ -19,12 +19,12 @@ from features.kernels.spectra import autospectrum
 from features.kernels.weighting import a_weighted_level
 from models.drawing import BLUE, VERMILION, padded, styled, thinned
 from models.recording import Recording
-from noise.audio.sound import audible
+from noise.audio.sound import RATE, audible
 from noise.diagnosis.outcome import ROLES, Illustration
 from noise.diagnosis.words import number
 from noise.pages import blocks as b
 from noise.pages.cards import facts_of
-from noise.pages.clips import RATE, Clip, Entry, common_gain, make_clips
+from noise.pages.clips import Clip, Entry, common_gain, make_clips
 from noise.pages.figures import COLUMNS, LEAD, Line, Panel, cycle_window, lines_panel
 from noise.pictures.figure import KINDS
 

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from features.kernels.weighting import a_weighted_level
 from models.errors import BushingNoiseError
 from models.rig import Rig
-from noise.audio.sound import audible
+from noise.audio.sound import RATE, audible
 from noise.base.labels import NAMED, PERSISTS
 from noise.base.progress import track
 from noise.batch.work import one_thread
-from noise.pages.clips import RATE, Entry
+from noise.pages.clips import Entry
 from noise.pages.maps import MAP_SIZE, ConditionMap, Spot, areas_of, axis_of
 from noise.pictures.figure import support_words
 from noise.screening.mapping import REFINED
@@ -138,7 +138,7 @@ def chosen_points(place: Place, most: int) -> list[tuple[int, int]]:
             alike = combination == combination[one]
             value[alike] = np.minimum(value[alike], np.linalg.norm(at[alike] - at[one], axis=1))
         value[silent] *= silent[chosen].sum() < MOST_SILENT
-        return np.where(certain, value, 0.5 * value)
+        return np.asarray(np.where(certain, value, 0.5 * value))
 
     loudest = [
         (levels[own, design].max(), int(own[levels[own, design].argmax()]))

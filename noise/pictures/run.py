@@ -145,7 +145,8 @@ def plot_run(run: Run) -> Figure:
     window = run_window(run)
     with styled():
         figure = new_figure(13.0, condition_words(run.recording.condition, run.motion))
-        histories, spectra = figure.subfigures(2, 1, height_ratios=(6.6, 6.4))
+        parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.6, 6.4))
+        histories, spectra = parts[:, 0]
         _histories(histories, run.motion, window)
         _spectra(spectra, run, window)
     return figure
