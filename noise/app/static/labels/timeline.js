@@ -46,11 +46,6 @@ export class Timeline extends EventTarget {
   // Show an interval with margins of a tenth.
   fit(start, end) { this.look(start - 0.1 * (end - start), end + 0.1 * (end - start)); }
 
-  // Scroll to a time if it is not visible.
-  follow(time) {
-    if (time < this.start || time > this.end) this.look(time - 0.1 * this.span, time + 0.9 * this.span);
-  }
-
   go(time) {
     this.position = Math.min(this.duration, Math.max(0, time));
     this.#tell("position");
