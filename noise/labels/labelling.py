@@ -140,11 +140,7 @@ class Labelling:
     surroundings: str | None = None
 
     doing = "labelling"
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Columns of the label table."""
-        return COLUMNS
+    columns = COLUMNS
 
     def prepare(self) -> None:
         """Load the classifier."""

@@ -107,15 +107,10 @@ def own_card(samples: Sequence[Sample], names: NDArray[np.intp]) -> dict[str, ob
             labels[label] = {
                 "files": len(files),
                 "stretches": int(own.sum()),
-                "enough": len(files) >= 5,
                 "recall": round(float(np.mean(names[own] == i)), 4) if own.any() else None,
                 "false_names": int(np.sum((names == i) & ~own)),
             }
-    return {
-        "weight": OWN_WEIGHT,
-        "files": len({sample.source for sample in samples}),
-        "labels": labels,
-    }
+    return {"files": len({sample.source for sample in samples}), "labels": labels}
 
 
 def _from_folders(folder: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
@@ -143,12 +138,12 @@ def _from_table(table: Path, refusals: list[str]) -> dict[Path, list[_Stretch]]:
     Its recordings are beside it or, as where the table is beside their folder, anywhere below.
     """
     by_file: dict[Path, list[_Stretch]] = {}
-    unknown = set()
+    unknown: set[str] = set()
     rows = [row for row in read_label_table(table, refusals) if row["label"] is not None]
     by_human = any(row["label_source"] == HUMAN for row in rows)
     files = {str(row["file"]) for row in rows}
     there = [path for path, _ in files_below(table.parent)]
-    there += [path for file in files if is_file(path := table.parent / file)]
+    there += [beside for file in files if is_file(beside := table.parent / file)]
     paths = table_recordings(files, table, there)
     for row in rows:
         path = paths[str(row["file"])]
