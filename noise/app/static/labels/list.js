@@ -166,7 +166,7 @@ function filled(node, shown, at, length) {
   name.replaceChildren(...[shown.name.slice(0, file), shown.name.slice(file)].filter(Boolean).map((textContent) => made("bdi", { textContent })));
   name.title = shown.name;
   const seen = shown.corrected ? ", corrected" : shown.partly ? ", partly corrected" : "";
-  labels.textContent = error ? `refused: ${error}` : (label ? shown.labels.join(" + ") : "no label yet") + seen;
+  labels.title = labels.textContent = error ? `refused: ${error}` : (label ? shown.labels.join(" + ") : "no label yet") + seen;
   const figures = [[frequency, 0, "Hz"], [level, 1, "dB(A)"], [duration, 1, "s"]];
   numbers.textContent = figures.filter(([value]) => value !== null).map(([value, digits, unit]) => `${value.toFixed(digits)} ${unit}`).join(" · ");
   return node;
