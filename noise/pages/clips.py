@@ -26,7 +26,7 @@ from noise.audio.sound import RATE
 from noise.base.labels import LABELS
 from noise.base.progress import counted
 from noise.labels.summary import labels_in, naming_row
-from noise.recordings.wav import integers, largest_sample
+from noise.recordings.wav import largest_sample
 
 Row = Mapping[str, object]
 
@@ -239,7 +239,7 @@ def make_clips(entries: Mapping[str, Entry], gain: Gain) -> dict[str, Clip]:
             continue
         fractions = np.clip((samples / gain.of(entry)).astype(np.float64), -largest, largest)
         flac = io.BytesIO()
-        steps = np.frombuffer(integers(fractions, _BITS, None), "<i2")
+        steps = np.round(fractions * 2.0 ** (_BITS - 1)).astype(np.int16)
         soundfile.write(flac, steps, RATE, format="FLAC", subtype="PCM_16")
         end = entry.offset + samples.size / RATE
         clips[key] = Clip(flac.getvalue(), samples, entry.offset, end)

@@ -1,9 +1,8 @@
-"""Writer of WAV files: recordings with their sidecars, and dithered sounds.
+"""Writer of WAV files: recordings with their sidecars, and sounds.
 
 The same samples give the same bytes. Libraries do not serve here: soundfile pads the header or adds
-the time of day, and supports neither dither nor a ``bext`` description; scipy needs all samples at
-once. Runs that do not fit into memory are written in blocks, whose total length the header
-announces.
+the time of day, and supports no ``bext`` description; scipy needs all samples at once. Runs that do
+not fit into memory are written in blocks, whose total length the header announces.
 """
 
 from __future__ import annotations
@@ -22,9 +21,6 @@ from noise.base.files import atomic
 from noise.recordings.files import MIN_SAMPLES
 from noise.recordings.formats import formats
 from noise.recordings.sidecar import sidecar_text
-
-BITS = (16, 24, 32)
-"""Sizes of a sample: integer, integer, floating point."""
 
 _DESCRIPTION_CHUNK = 602  # byte (EBU Tech 3285); the first 256 are the description
 _BLOCK = 1 << 16  # samples per channel
@@ -138,7 +134,7 @@ def wav_bytes(
     rate : int
         Sampling rate [Hz].
     bits : int
-        One of `BITS`.
+        16 or 24 for integers, or 32 for floating point.
     description : str
         Text of the ``bext`` chunk, which is omitted if empty.
 
@@ -150,7 +146,8 @@ def wav_bytes(
     header = _header(fractions.size, rate, bits, description=description)
     if bits == 32:
         return header + fractions.astype("<f4").tobytes()
-    samples = integers(fractions, bits, None)
+    steps = np.round(fractions * 2.0 ** (bits - 1)).astype("<i4")
+    samples = steps.view(np.uint8).reshape(-1, 4)[:, : bits // 8].tobytes()
     return header + samples + bytes(len(samples) % 2)
 
 
@@ -174,30 +171,3 @@ def _header(
     head = b"".join(name + struct.pack("<I", len(content)) + content for name, content in chunks)
     riff = struct.pack("<4sI4s", b"RIFF", 12 + len(head) + size + size % 2, b"WAVE")
     return riff + head + struct.pack("<4sI", b"data", size)
-
-
-def integers(
-    fractions: NDArray[np.float64], bits: int, dither: np.random.Generator | None
-) -> bytes:
-    r"""Return samples, shape (n,), as rounded and dithered little-endian integers.
-
-    Triangular dither of two steps' width makes noise of what rounding of quiet sounds would
-    distort.
-
-    References
-    ----------
-    S. P. Lipshitz, R. A. Wannamaker and J. Vanderkooy, Quantization and dither: a theoretical
-    survey, J. Audio Eng. Soc. 40 (1992) 355-375.
-
-    Examples
-    --------
-    >>> integers(np.array([0.5, -0.5]), 16, None)
-    b'\x00@\x00\xc0'
-    """
-    steps = fractions * 2.0 ** (bits - 1)
-    if dither is not None:
-        steps += dither.random(steps.size) - dither.random(steps.size)
-        most = 2.0 ** (bits - 1) - 1.0
-        np.clip(steps, -most, most, out=steps)  # dither must not make a sample clip
-    integers = np.round(steps).astype("<i4")
-    return integers.view(np.uint8).reshape(-1, 4)[:, : bits // 8].tobytes()

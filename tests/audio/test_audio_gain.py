@@ -20,7 +20,6 @@ from noise.audio.gain import (
 )
 from noise.audio.render import FullScale, measure, render
 from noise.audio.sound import joined
-from noise.recordings.wav import integers
 
 RATE = 48000
 
@@ -70,19 +69,6 @@ def test_the_full_scale_told_is_enough_and_hardly_too_much(peak):
     assert peak <= CEILING * least
     assert peak > 0.998 * CEILING * least
     assert float(f"{least:g}") == least
-
-
-def test_dither_makes_noise_of_what_rounding_would_distort():
-    quiet = 0.7 * 2.0**-15 * tone(1000)  # less than a step of 16 bit
-    frequency_of_third = 3000
-    spectra = []
-    for dither in (None, np.random.default_rng(0)):
-        steps = np.frombuffer(integers(quiet, 16, dither), "<i2").astype(float)
-        spectra.append(np.abs(np.fft.rfft(steps)) * 2 / RATE)
-    rounded, dithered = spectra
-    assert rounded[frequency_of_third] > 0.1
-    assert dithered[frequency_of_third] < 0.02
-    assert dithered[1000] == pytest.approx(0.7, abs=0.03)
 
 
 def run(name, amplitude, *, rate=RATE, seconds=0.5, condition=None, calibrated=True):
