@@ -21,10 +21,10 @@ from features.kernels.harmonics import HIGHEST, LOWEST, Harmonics, harmonics_of
 from features.kernels.lines import Lines, find_lines, line_resolution, noise_floor
 from features.kernels.modulation import Modulation, modulation, short_time
 from features.kernels.slips import (
+    PULSE_BAND_FROM,
     Pulses,
     TorqueSlips,
     envelope_kurtosis,
-    pulse_band_from,
     pulses_of,
     squared,
     torque_slips,
@@ -162,7 +162,7 @@ class Prepared:
     @cached_property
     def pulses(self) -> Pulses:
         """Pulses and their rhythm."""
-        low = pulse_band_from(self.limit)
+        low = PULSE_BAND_FROM * self.limit / conditioning.WORKING_LIMIT
         high, rate = conditioning.band_analytic(self.transform, low, self.limit)
         return pulses_of(self.analytic[0], high, rate)
 

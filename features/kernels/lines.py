@@ -199,11 +199,14 @@ def find_lines(
         wlen=max(9, 2 * round(_FLOOR_WIDTH / spacing) + 1),
     )
     inside &= f >= MAIN_LOBE * spacing
-    peaks = peaks[inside[peaks] & (above[peaks] >= max(PROMINENCE_DB, _chance_level(spectrum)))]
+    half = 0.5 * spectrum.degrees_of_freedom
+    chance = 10.0 * float(np.log10(special.gammainccinv(half, _FALSE_LINES) / half))
+    peaks = peaks[inside[peaks] & (above[peaks] >= max(PROMINENCE_DB, chance))]
     peaks = _separate(peaks, level, f, spacing)
     if peaks.size == 0:
         return Lines(np.empty(0), np.empty(0), total)
-    power = line_powers(spectrum, floor, f[peaks], spacing=_nearest_neighbour(f[peaks]))
+    gaps = np.concatenate([[np.inf], np.diff(f[peaks]), [np.inf]])
+    power = line_powers(spectrum, floor, f[peaks], spacing=np.minimum(gaps[:-1], gaps[1:]))
     power = np.clip(power, 0.0, total)
     order = np.argsort(power)[::-1]
     frequency = parabola_tops(level, peaks)[0] * spacing
@@ -255,12 +258,6 @@ def line_powers(
     )
 
 
-def _chance_level(spectrum: Spectrum) -> float:
-    """Return the level above its mean that noise exceeds in a bin with `_FALSE_LINES` [dB]."""
-    half = 0.5 * spectrum.degrees_of_freedom
-    return 10.0 * float(np.log10(special.gammainccinv(half, _FALSE_LINES) / half))
-
-
 def _separate(
     peaks: NDArray[np.intp], level: NDArray[np.float64], f: NDArray[np.float64], spacing: float
 ) -> NDArray[np.intp]:
@@ -278,9 +275,3 @@ def _separate(
             separate[i] = True
             free &= np.abs(at - at[i]) > reach[i]
     return np.asarray(peaks[separate])
-
-
-def _nearest_neighbour(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distance of each of rising frequencies to its nearest neighbour."""
-    gaps = np.concatenate([[np.inf], np.diff(frequency), [np.inf]])
-    return np.asarray(np.minimum(gaps[:-1], gaps[1:]))

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from features.kernels.conditioning import NOTHING, WORKING_LIMIT, checked_signal
+from features.kernels.conditioning import NOTHING, checked_signal
 from features.kernels.spectra import parabola_tops
 from models.show import short_repr
 
@@ -248,7 +248,7 @@ def _median(values: NDArray[np.float64]) -> float:
     return float(np.median(values)) if values.size else math.nan
 
 
-_PULSE_BAND_FROM = 2_000.0
+PULSE_BAND_FROM = 2_000.0
 """Lower limit of the band of pulses [Hz]; lower for a rate below 16 kHz."""
 
 _PULSE_SMOOTHING = 0.0005
@@ -303,27 +303,6 @@ class Pulses:
 
 _NO_PULSES = Pulses(0.0, *[math.nan] * 6)
 """Result for a signal without content."""
-
-
-def pulse_band_from(limit: float) -> float:
-    """Return the lower limit of the band of pulses.
-
-    Parameters
-    ----------
-    limit : float
-        Upper limit [Hz].
-
-    Returns
-    -------
-    float
-        [Hz]
-
-    Examples
-    --------
-    >>> pulse_band_from(7000.0), pulse_band_from(3500.0)
-    (2000.0, 1000.0)
-    """
-    return _PULSE_BAND_FROM * limit / WORKING_LIMIT
 
 
 def pulses_of(

@@ -441,7 +441,9 @@ def _read_csv(content: bytes) -> tuple[_Form, Iterator[list[str]]]:
     decimal = "," if commas > 0 or (not commas and separator == ";") else "."
     form = _Form(encoding, separator, decimal, "\r\n" if "\r\n" in text else "\n")
     rows = csv.reader(_file(table), delimiter=separator, strict=True)
-    return form, ([_without_apostrophe(cell) for cell in row] for row in rows)
+    # An apostrophe protects a text from being a formula.
+    plain = ([c[1:] if c[:1] == "'" and _FORMULA.match(c) else c for c in row] for row in rows)
+    return form, plain
 
 
 def _decoded(content: bytes) -> tuple[str, str]:
@@ -458,11 +460,6 @@ def _decoded(content: bytes) -> tuple[str, str]:
 def _file(text: str) -> io.StringIO:
     """Return a text as a file for the csv module."""
     return io.StringIO(text, newline="")
-
-
-def _without_apostrophe(cell: str) -> str:
-    """Return a cell without the apostrophe that protects it from being a formula."""
-    return cell[1:] if cell[:1] == "'" and _FORMULA.match(cell) else cell
 
 
 def _write_csv(

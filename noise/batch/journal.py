@@ -178,7 +178,8 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
         with closing(Journal()) as journal:
             yield journal
         return
-    with _opened(table, _work_identity(work), fresh=fresh) as journal:
+    identity = call_identity(work.doing, list(work.columns), dict(work.identity()))
+    with _opened(table, identity, fresh=fresh) as journal:
         yield journal
 
 
@@ -264,11 +265,6 @@ def call_identity(*decisive: object) -> str:
     '["rendering", 48000.0]'
     """
     return json.dumps(decisive)
-
-
-def _work_identity(work: Work) -> str:
-    """Return the identity of a call with this work."""
-    return call_identity(work.doing, list(work.columns), dict(work.identity()))
 
 
 def _key(job: Job) -> str:
