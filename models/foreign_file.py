@@ -14,6 +14,7 @@ a row of units below a row of names.
 
 from __future__ import annotations
 
+import codecs
 import csv
 import io
 import json
@@ -302,7 +303,6 @@ def read_array(path: Path) -> NDArray[Any]:
 
 
 _SEPARATORS = (";", "\t", ",", " ")
-_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 @dataclass(frozen=True, eq=False)
@@ -348,7 +348,7 @@ def read_table(path: Path) -> ForeignTable:
     """
     import numpy as np
 
-    text = _decoded(path.read_bytes())
+    text, _ = decoded(path.read_bytes())
     for separator in _SEPARATORS:
         reader = csv.reader(
             io.StringIO(text, newline=""), delimiter=separator, skipinitialspace=separator == " "
@@ -381,13 +381,21 @@ def read_table(path: Path) -> ForeignTable:
     return ForeignTable(names, units, values)
 
 
-def _decoded(content: bytes) -> str:
-    if content.startswith(_UTF16):
-        return content.decode("utf-16")
+def decoded(content: bytes) -> tuple[str, str]:
+    """Return a text and its encoding; for that of a code page, the one to write it in.
+
+    Examples
+    --------
+    >>> decoded("Größe".encode("utf-16")), decoded("Größe".encode("cp1252"))
+    (('Größe', 'utf-16'), ('Größe', 'utf-8-sig'))
+    """
+    if content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        return content.decode("utf-16"), "utf-16"
+    marked = content.startswith(codecs.BOM_UTF8)
     try:
-        return content.decode("utf-8-sig")
+        return content.decode("utf-8-sig"), "utf-8-sig" if marked else "utf-8"
     except UnicodeDecodeError:
-        return content.decode("cp1252", errors="replace")
+        return content.decode("cp1252", "replace"), "utf-8-sig"
 
 
 def _begins_numbers(row: list[str]) -> bool:

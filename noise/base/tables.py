@@ -14,7 +14,6 @@ apostrophe.
 
 from __future__ import annotations
 
-import codecs
 import csv
 import io
 import json
@@ -30,7 +29,14 @@ from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
 from models.errors import BushingNoiseError, ParameterError, RecordingError, not_installed
-from models.foreign_file import LARGEST_TEXT, ExcessError, check_inflation, parse_json, reading
+from models.foreign_file import (
+    LARGEST_TEXT,
+    ExcessError,
+    check_inflation,
+    decoded,
+    parse_json,
+    reading,
+)
 from noise.base.files import atomic
 from noise.base.progress import readable
 
@@ -428,7 +434,7 @@ class _Form(NamedTuple):
 
 def _read_csv(content: bytes) -> tuple[_Form, Iterator[list[str]]]:
     """Return the dialect of a CSV table and its rows of text, header first."""
-    text, encoding = _decoded(content)
+    text, encoding = decoded(content)
     if "\0" in text:
         raise ValueError("is no text")
     lines = text.splitlines(keepends=True)
@@ -444,17 +450,6 @@ def _read_csv(content: bytes) -> tuple[_Form, Iterator[list[str]]]:
     # An apostrophe protects a text from being a formula.
     plain = ([c[1:] if c[:1] == "'" and _FORMULA.match(c) else c for c in row] for row in rows)
     return form, plain
-
-
-def _decoded(content: bytes) -> tuple[str, str]:
-    """Return the text and the encoding for writing; a code page is replaced by UTF-8."""
-    if content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
-        return content.decode("utf-16"), "utf-16"
-    marked = content.startswith(codecs.BOM_UTF8)
-    try:
-        return content.decode("utf-8-sig"), "utf-8-sig" if marked else "utf-8"
-    except UnicodeDecodeError:
-        return content.decode("cp1252", "replace"), "utf-8-sig"
 
 
 def _file(text: str) -> io.StringIO:
