@@ -383,15 +383,11 @@ def _halves(cell: Cell) -> list[Cell]:
     plane, top, bottom, left, right = cell
     if bottom - top < 2 and right - left < 2:
         return []
-    rows, columns = _cut(top, bottom), _cut(left, right)
+    rows, columns = (
+        [(a, b)] if b - a < 2 else [(a, (a + b) // 2), ((a + b) // 2, b)]
+        for a, b in ((top, bottom), (left, right))
+    )
     return [(plane, *row, *column) for row in rows for column in columns]
-
-
-def _cut(first: int, last: int) -> list[tuple[int, int]]:
-    if last - first < 2:
-        return [(first, last)]
-    middle = (first + last) // 2
-    return [(first, middle), (middle, last)]
 
 
 def interpolated(

@@ -69,12 +69,8 @@ def test_a_constant_torque_is_silent_and_its_table_is_empty():
 
 
 def test_bands_beyond_the_modes_are_refused():
-    stiff = replace(
-        RIG,
-        plate=replace(
-            RIG.plate, length=0.1, width=0.08, thickness=0.012, clamp_position=(0.0, 0.0)
-        ),
-    )
+    small = {"length": 0.1, "width": 0.08, "thickness": 0.012, "clamp_position": (0.0, 0.0)}
+    stiff = replace(RIG, plate=replace(RIG.plate, **small))
     motion = simulate(RIG, 5.0, support_stiffness=FIXED, seconds=0.3).motion
     with pytest.raises(ParameterError, match="reach beyond the plate's modes"):
         motion_sound_power(stiff, motion, interference=0.279e-3, support_stiffness=FIXED)

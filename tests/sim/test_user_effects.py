@@ -112,12 +112,6 @@ def test_a_rig_file_may_name_the_users_effect(effects_file, tmp_path, capsys):
         (OFFSET.replace(", sensors=sensors", ""), "needs one of drive, contact, force and sens"),
         (ECCENTRIC.replace("@njit(HOOK_SIGNATURE)", ""), "contact is not compiled"),
         (ECCENTRIC.replace("math.cos", "mathematics.cos"), "'mathematics' is not defined"),
-        (
-            ECCENTRIC.replace("njit(HOOK_SIGNATURE)", 'njit("void(float64[::1])")')
-            .replace("context, values, state, state_rates, contact", "contact")
-            .replace("values[0] * math.cos(context[SHAFT_ANGLE])", "contact[0]"),
-            "contact cannot be compiled by HOOK_SIGNATURE",
-        ),
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_before_the_work(effects_file, capsys, text, said):
