@@ -77,6 +77,10 @@ _STARTS = (
 """Shares of the speed at which a contact is brought to stick and slip that slides stably at any,
 and the same times [s]."""
 
+_JUMPS = ((0.97, 0.4, 0.05), (0.85, 0.4, 0.05), (0.7, 1.0, 0.5))
+"""The same for starts at the first speed at which a vibration dies. Several vibrations may exist
+beside stable sliding, and one that no slow change of speed reaches can be reached by a jump."""
+
 _DAMPED = -100.0
 """Growth below which a vibration that dies is not started again [1/s]; those that lasted beside
 stable sliding in 400 drawn designs are at -45 and above."""
@@ -277,14 +281,23 @@ def _outwards(
     Where they have died before there is none, and most such speeds are not run.
     """
     ran: set[int] = set()
+    jumped: set[int] = set()
     lasting: dict[int, Course] = {}
     dead: dict[int, int] = {}  # by where the vibration came from
     last, first_dead = -1, len(side)
-    while first_dead - last > 1 or dead.get(first_dead, last) != last:
-        k = (last + first_dead) // 2 if first_dead - last > 1 else first_dead
-        at, growth, start = side[k]
-        ran.add(k)
-        course = running(rig, at, growth, start, started=lasting.get(last), again=k == 0)
+    while True:
+        if first_dead - last > 1 or dead.get(first_dead, last) != last:
+            k = (last + first_dead) // 2 if first_dead - last > 1 else first_dead
+            at, growth, start = side[k]
+            ran.add(k)
+            course = running(rig, at, growth, start, started=lasting.get(last), again=k == 0)
+        elif first_dead < len(side) and side[first_dead][1] >= _DAMPED and first_dead not in jumped:
+            k = first_dead
+            at, growth, _ = side[k]
+            jumped.add(k)
+            course = _started(rig, at, growth, _JUMPS)
+        else:
+            break
         if course.lasts:
             lasting[k], last = course, k
             dead.pop(k, None)
@@ -360,14 +373,31 @@ def running(
         seconds = max(_LEAST_RAMP, _RAMP * apart) if apart else 0.0
         ramp = np.linspace(started.speed, at.speed, round(seconds * RATE))
         return _followed(solver, at, growth, approach=ramp, patience=patience)
-    starts = _STARTS if unstable is None else ((unstable / at.speed, *_NEAREST), _LARGE)
+    if unstable is None:
+        return _started(rig, at, growth, _STARTS, patience)
+    starts = ((unstable / at.speed, *_NEAREST), _LARGE)
+    return _started(rig, at, growth, starts[: 2 if again and growth >= _DAMPED else 1], patience)
+
+
+def _started(
+    rig: Rig,
+    at: Condition,
+    growth: float,
+    starts: Sequence[tuple[float, float, float]],
+    patience: float = _IRREGULAR,
+) -> Course:
+    """Return the first course that lasts of several starts; the last one if none does.
+
+    A start is a share of the speed [-], how long the rig runs there, and in which time the speed is
+    then changed [s].
+    """
     for share, held, seconds in starts:
         start = share * at.speed
         solver = _solver(rig, replace(at, speed=start))
         ramp = np.linspace(start, at.speed, round(seconds * RATE))
         approach = np.concatenate([np.full(round(held * RATE), start), ramp])
         course = _followed(solver, at, growth, approach=approach, held=held, patience=patience)
-        if course.lasts or (unstable is not None and (growth < _DAMPED or not again)):
+        if course.lasts:
             break
     return course
 
