@@ -143,8 +143,8 @@ def with_measured(
     if measured:
         others = ", ".join(support_name(entry.support_stiffness) for entry in measured)
         warnings.warn(
-            f"no response was measured with the support {support_name(support_stiffness)}, only with "
-            f"{others} (Nm/rad); it is modelled",
+            f"no response was measured with the support {support_name(support_stiffness)}, only "
+            f"with {others} (Nm/rad); it is modelled",
             stacklevel=2,
         )
     return modelled
