@@ -351,10 +351,12 @@ def location_sentence(diagnosis: Diagnosis) -> str:
         for name, one in diagnosis.stages.items()
         if name != place.stage and one.p_value <= SURE
     }
-    if others:
-        ranked = sorted(others, key=lambda name: -others[name])
-        sentence += f" It shows {joined([row(name) for name in ranked])} as well."
-    return sentence
+    if not others:
+        return sentence
+    also = joined([row(name) for name in sorted(others, key=lambda name: -others[name])])
+    if place.p_value > SURE:
+        return f"The gap shows {also}. It{sentence.removeprefix('The gap')}"
+    return f"{sentence} It shows {also} as well."
 
 
 def closed_words(finding: EffectFinding | None, of: str = "", interval: str = "") -> str:

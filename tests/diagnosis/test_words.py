@@ -63,7 +63,8 @@ def test_the_place_says_channel_band_phase_and_condition_and_other_stages_that_d
         "(15 % of the gap, p = 0.031) as well."
     )
     slight = replace(one_effect(), location=replace(one_effect().location, p_value=0.6))
-    assert location_sentence(slight).startswith("The gap may show in the friction")
+    assert location_sentence(slight).startswith("The gap shows in the structure (15 % of the gap")
+    assert "It may show in the friction" in location_sentence(slight)
 
 
 def test_one_of_five_intervals_that_just_misses_one_is_no_difference():
