@@ -353,7 +353,10 @@ def read_table(path: Path) -> ForeignTable:
         reader = csv.reader(
             io.StringIO(text, newline=""), delimiter=separator, skipinitialspace=separator == " "
         )
-        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        try:
+            rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        except csv.Error:  # a long line without this separator is one field, longer than allowed
+            continue
         rows = [(line, row) for line, row in rows if any(row)]
         first = next((i for i, (_, row) in enumerate(rows) if _begins_numbers(row)), None)
         if first is not None:

@@ -11,6 +11,7 @@ an unmounted network drive or a missing library.
 
 from __future__ import annotations
 
+import errno
 import json
 import sqlite3
 from collections.abc import Iterator
@@ -85,7 +86,7 @@ class Journal:
                     (_encodable(key), json.dumps(values)),
                 )
         except sqlite3.Error as error:
-            raise ParameterError(f"{self._path}: cannot be written ({error})") from None
+            raise _cannot_write(self._path, error) from None
 
     def find(self, job: Job) -> JobResult | None:
         """Return the result of a recording; None if it is missing or the file has changed."""
@@ -228,6 +229,7 @@ def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Jou
     """Lock and open the journal of a target; replace a damaged one."""
     path = journal_path(target)
     with locked(path, wait=False):
+        new = not path.exists()
         try:
             try:
                 journal = Journal(path)
@@ -240,9 +242,24 @@ def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Jou
                 journal = Journal(path)
                 journal.begin(identity)
         except sqlite3.Error as error:
-            raise ParameterError(f"{path}: cannot be written ({error})") from None
+            if new:
+                for part in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm"))):
+                    part.unlink(missing_ok=True)
+            raise _cannot_write(path, error) from None
         with closing(journal):
             yield journal
+
+
+def _cannot_write(path: Path | None, error: sqlite3.Error) -> Exception:
+    """Return the error of a journal that cannot be written: of the machine, or of its path."""
+    reason = f"cannot be written ({error})"
+    # Extended codes have the primary one in their last byte.
+    if (getattr(error, "sqlite_errorcode", 0) & 0xFF) in (
+        sqlite3.SQLITE_FULL,
+        sqlite3.SQLITE_IOERR,
+    ):
+        return OSError(errno.ENOSPC, reason, str(path))
+    return ParameterError(f"{path}: {reason}")
 
 
 def journal_path(target: Path) -> Path:

@@ -85,3 +85,11 @@ def test_what_is_no_hit_in_si_is_refused(tmp_path, header, columns, message):
         read_hit(path)
     assert str(refused.value).startswith(str(path))
     assert "\n" not in str(refused.value)
+
+
+def test_rows_may_be_longer_than_a_field_of_the_csv_module(tmp_path):
+    hit = np.stack([np.arange(20_000) / 25_600, *np.random.default_rng(0).normal(size=(2, 20_000))])
+    np.savetxt(tmp_path / "rows.csv", hit, delimiter=",")
+    np.savetxt(tmp_path / "columns.csv", hit.T, delimiter=",")
+    one, other = (read_hit(tmp_path / f"{name}.csv")[0] for name in ("rows", "columns"))
+    np.testing.assert_array_equal(one.force, other.force)
