@@ -161,7 +161,7 @@ def read_case(paths: Sequence[Path], rig: Rig) -> Case:
         try:
             recording = usable(read_recording(path), rig)
         except BushingNoiseError as error:
-            refused.append((name, str(error)))
+            refused.append((name, str(error).removeprefix(f"{path}: ")))
         else:
             names.append(name)
             recordings.append(recording)

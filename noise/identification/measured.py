@@ -197,7 +197,7 @@ def read_measurements(paths: Sequence[Path]) -> tuple[list[Measured], list[tuple
         try:
             used.append(measured(read_recording(path), name))
         except BushingNoiseError as error:
-            refused.append((name, str(error)))
+            refused.append((name, str(error).removeprefix(f"{path}: ")))
     if not (used or refused):
         raise ParameterError(f"{', '.join(str(path) for path in paths)}: no recording")
     return used, refused
