@@ -17,7 +17,6 @@ from models.rig_file import changed_rig_text
 from noise.app.design_controls import Base, base_of, read_values
 from noise.base.files import atomic
 from noise.base.remarks import effect_remarks, temperature_remark, use_remarks
-from noise.screening.grid import fits_remark
 from sim.effects import EFFECTS
 from sim.plan import Setting
 from sim.shaft import ConstantSpeed
@@ -98,7 +97,6 @@ class Design:
             support_stiffness=[setting.support_stiffness],
             temperature=[setting.temperature],
         )
-        notes.append(fits_remark(setting.rig, [setting.interference]))
         notes.append(temperature_remark(setting.rig, setting.temperature))
         notes += effect_remarks(setting.rig, EFFECTS)
         left_out = [

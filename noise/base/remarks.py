@@ -65,6 +65,7 @@ def use_remarks(
         *remarks(rig),
         speed_remark,
         fit.remark(*map(fit.of, interference)),
+        fits_remark(rig, interference),
         CONDITION["support_stiffness"].remark(*finite),
         CONDITION["temperature"].remark(*temperature),
     ]
@@ -88,6 +89,53 @@ def use_remarks(
                 "have more inertia than the clamp itself; their anchors are taken as rigid"
             )
     return [text for text in dict.fromkeys(lines) if text]
+
+
+def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
+    """Return a remark on interferences without a fit of their own; empty if there are none.
+
+    Parameters
+    ----------
+    rig : Rig
+    interference : sequence of float
+        [m]
+
+    Examples
+    --------
+    >>> from models.rig_file import load_material_rig
+    >>> fits_remark(load_material_rig("PDMS"), [0.178e-3, 0.254e-3, 0.3e-3])
+    'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
+    """
+    given = [fit.interference for fit in rig.fits]
+    held: list[float] = []
+    within: list[float] = []
+    for fit in interference:
+        if not any(math.isclose(one, fit, rel_tol=0.01) for one in given):
+            (within if given[0] < fit < given[-1] else held).append(1e3 * fit)
+    parts = [f"for {axis_words(held)} mm the nearest is held"] if held else []
+    parts += [f"for {axis_words(within)} mm they are interpolated"] if within else []
+    known = axis_words([1e3 * fit for fit in given])
+    return f"fits are given for {known} mm; {', '.join(parts)}" if parts else ""
+
+
+def axis_words(values: Sequence[float], most: int = 4) -> str:
+    """Return the values of an axis as text, or only its ends and number above `most` values.
+
+    Parameters
+    ----------
+    values : sequence of float
+        In the unit of the axis, such as [rad/s].
+    most : int
+
+    Examples
+    --------
+    >>> axis_words([2214.0, math.inf]), axis_words([0.25, 0.5, 0.75], most=2)
+    ('2214 and fixed', '0.25 to 0.75 (3 values)')
+    """
+    texts = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
+    if len(texts) > most:
+        return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
 
 
 def temperature_remark(rig: Rig, *temperatures: float | None) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from models.errors import ParameterError, RecordingError
 from noise.base.files import locked
 from noise.base.labels import LABELS
-from noise.base.progress import readable
+from noise.base.progress import note, readable
 from noise.batch.journal import written_rows
 from noise.labels.table import (
     CLASSIFIER,
@@ -33,6 +33,10 @@ WHOLE = "all"
 
 _DECIMALS = 6
 """Decimals of times, as `label` writes them."""
+
+
+_SAME_END = 0.02
+"""Largest difference between the ends of a correction and of its recording [s]; assumed."""
 
 
 def track(row: Row) -> str:
@@ -127,7 +131,10 @@ def with_corrections(path: Path | None, rows: list[dict[str, object]]) -> list[d
     if path is None:
         return rows
     before = _corrected_table(path, (str(row.get("file")) for row in rows))
-    return rows if before is None else with_corrected_rows(before, rows)
+    if before is None:
+        return rows
+    _note_other_recordings(path, before, rows)
+    return with_corrected_rows(before, rows)
 
 
 def sign_corrections(path: Path, names: Iterable[str]) -> None:
@@ -201,6 +208,24 @@ def _check_names(path: Path, before: Iterable[dict[str, object]], known: set[str
             raise ParameterError(
                 f"{path}: has {name!r}, by which {plain[_ascii(name)]!r} may be meant, so that "
                 "what was corrected would be lost: save it as UTF-8, or name another table"
+            )
+
+
+def _note_other_recordings(
+    path: Path, before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+) -> None:
+    """Note corrections that end elsewhere than the recording: it may be another of that name."""
+    ends: tuple[dict[str, float], dict[str, float]] = ({}, {})
+    for end, some in zip(ends, (filter(_is_by_a_person, before), rows), strict=True):
+        for row in some:
+            name, last = readable(str(row.get("file"))), place(row)[2]
+            end[name] = max(end.get(name, 0.0), last)
+    for name, last in ends[0].items():
+        duration = ends[1].get(name, math.inf)
+        if math.isfinite(last) and math.isfinite(duration) and last > duration + _SAME_END:
+            note(
+                f"{path}: the correction of {name} ends at {last:.2f} s, the recording at "
+                f"{duration:.2f} s; if it is another recording of that name, name another table"
             )
 
 

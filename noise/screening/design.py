@@ -517,23 +517,3 @@ def _part_values(part: str, what: str, whole: str, rule: AxisRule) -> tuple[floa
     if rule.step is not None and not slash:
         n = min(MOST_POINTS, round((end - start) / rule.step) + 1)
     return spread(start, end, max(2, n))
-
-
-def axis_words(values: Sequence[float], most: int = 4) -> str:
-    """Return the values of an axis as text, or only its ends and number above `most` values.
-
-    Parameters
-    ----------
-    values : sequence of float
-        In the unit of the axis, such as [rad/s].
-    most : int
-
-    Examples
-    --------
-    >>> axis_words([2214.0, FIXED]), axis_words([0.25, 0.5, 0.75], most=2)
-    ('2214 and fixed', '0.25 to 0.75 (3 values)')
-    """
-    texts = ["fixed" if math.isinf(value) else f"{value:.4g}" for value in values]
-    if len(texts) > most:
-        return f"{texts[0]} to {texts[-1]} ({len(texts)} values)"
-    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)

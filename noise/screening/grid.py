@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from models.condition import FIXED
 from models.rig import Rig
 from models.show import short_repr
-from noise.screening.design import SPEED_STEP, Design, Swinging, Use, axis_words, spread
+from noise.base.remarks import axis_words
+from noise.screening.design import SPEED_STEP, Design, Swinging, Use, spread
 from noise.screening.environments import DRY, environment
 
 DEFAULT_SPEEDS = (0.25, 13.0)
@@ -29,9 +30,6 @@ _DEFAULT_SUPPORT = 2214.0
 _DEFAULT_TEMPERATURE = 23.0
 _ALIKE = 1e-6
 """Relative distance below which two values of an axis are equal."""
-
-_SAME_FIT = 0.01
-"""Relative tolerance of a fit that data are given for."""
 
 _MOST_LISTED = 6
 """Largest number of values of an axis that are listed."""
@@ -223,30 +221,3 @@ def _supports(rig: Rig) -> tuple[float, ...]:
     """Return the supports for which the rig states damping, by default those of the bench."""
     given = sorted({support for fit in rig.fits for support in fit.damping})
     return tuple(given) if any(math.isfinite(k) for k in given) else (_DEFAULT_SUPPORT, FIXED)
-
-
-def fits_remark(rig: Rig, interference: Sequence[float]) -> str:
-    """Return a remark on interferences without a fit of their own; empty if there are none.
-
-    Parameters
-    ----------
-    rig : Rig
-    interference : sequence of float
-        [m]
-
-    Examples
-    --------
-    >>> from models.rig_file import load_material_rig
-    >>> fits_remark(load_material_rig("PDMS"), [0.178e-3, 0.254e-3, 0.3e-3])
-    'fits are given for 0.254 and 0.381 mm; for 0.178 mm the nearest is held, for 0.3 mm they are...
-    """
-    given = _fits(rig)
-    held: list[float] = []
-    within: list[float] = []
-    for fit in interference:
-        if not any(math.isclose(one, fit, rel_tol=_SAME_FIT) for one in given):
-            (within if given[0] < fit < given[-1] else held).append(1e3 * fit)
-    parts = [f"for {axis_words(held)} mm the nearest is held"] if held else []
-    parts += [f"for {axis_words(within)} mm they are interpolated"] if within else []
-    known = axis_words([1e3 * fit for fit in given])
-    return f"fits are given for {known} mm; {', '.join(parts)}" if parts else ""

@@ -33,7 +33,7 @@ from noise.batch.journal import Journal
 from noise.screening.advice import advise
 from noise.screening.design import Design, Use, load_designs
 from noise.screening.environments import DRY, environment, in_environment
-from noise.screening.grid import Grid, fits_remark, shared_grid, shared_motions
+from noise.screening.grid import Grid, shared_grid, shared_motions
 from noise.screening.mapping import SIMULATED, DesignMap, map_design
 from noise.screening.parts import noisy_parts
 from noise.screening.point import batch_evaluator, keeping
@@ -378,7 +378,6 @@ def _remarks(design: Design, where: str, here: Sequence[Grid], given: Use | None
         rig, speed=speed, interference=fits, support_stiffness=here[0].support_stiffness,
         temperature=temperature,
     )  # fmt: skip
-    remarks.append(fits_remark(rig, fits))
     if rig.temperature or (given is not None and given.temperature) or len(temperature) > 1:
         remarks.append(temperature_remark(rig, *temperature))
     remarks += effect_remarks(in_environment(rig, environment(where)), EFFECTS)

@@ -66,6 +66,13 @@ def test_a_correction_before_there_is_a_table_outlives_the_labelling(folder):
     assert [r["label"] for r in rows] == ["none", "squawk", "none"]
 
 
+def test_a_correction_that_ends_after_the_recording_may_be_of_another_one(folder, capsys):
+    correct(labels_of(folder), 1, [Correction(0.0, 2.0, "squawk")])
+    rows = with_corrections(folder / "labels.csv", [row(name, end=1.0) for name in NAMES])
+    assert [r["label"] for r in rows] == ["none", "squawk", "none"]
+    assert f"{NAMES[1]} ends at 2.00 s, the recording at 1.00 s" in capsys.readouterr().err
+
+
 def test_rows_and_columns_that_are_not_ours_stay(folder):
     rows = [row("a.wav") | {"remark": "left door"}, row("gone.wav") | {"remark": "sold"}]
     write_table(folder / "labels.csv", (*COLUMNS, "remark"), rows)
