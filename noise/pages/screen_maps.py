@@ -9,7 +9,7 @@ points far from these; a click anywhere else plays the nearest.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -221,8 +221,10 @@ def compare_designs(
     ]
     with one_thread():
         work = Parallel(n_jobs=workers, prefer="threads", return_as="generator")
-        done = work(delayed(_sound)(*job, seed) for job in jobs)
-        entries = track(done, "simulating sounds", unit="sound", total=len(jobs)) if jobs else ()
+        entries: Iterable[Entry | str] = ()
+        if jobs:  # a generator that is not used warns
+            done = work(delayed(_sound)(*job, seed) for job in jobs)
+            entries = track(done, "simulating sounds", unit="sound", total=len(jobs))
         sounds: dict[str, Entry] = {}
         keys: dict[tuple[int, int, tuple[int, int]], str] = {}
         silent = {of: rig for of, rig in rig_of.items() if isinstance(rig, str)}
