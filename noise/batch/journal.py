@@ -48,17 +48,28 @@ class Journal:
     ----------
     path : Path or None
         None is a temporary file.
+    identity : str
+        Result of `call_identity`; results of another call are deleted.
+    fresh : bool
+        Whether to delete all earlier results.
     """
 
-    def __init__(self, path: Path | None = None) -> None:
+    def __init__(
+        self, path: Path | None = None, identity: str = "", *, fresh: bool = False
+    ) -> None:
         self._path = path
         self._database = sqlite3.connect("" if path is None else path, timeout=_TIMEOUT)
-        # Results reach the operating system at once, which survives a kill; the disk follows.
-        self._database.executescript(
-            f"pragma journal_mode = wal; pragma synchronous = normal; {_TABLES}"
-        )
+        try:
+            # Results reach the operating system at once, which survives a kill; the disk follows.
+            self._database.executescript(
+                f"pragma journal_mode = wal; pragma synchronous = normal; {_TABLES}"
+            )
+            self._begin(identity, fresh=fresh)
+        except sqlite3.Error:
+            self.close()  # Windows deletes no open file
+            raise
 
-    def begin(self, identity: str, *, fresh: bool = False) -> None:
+    def _begin(self, identity: str, *, fresh: bool) -> None:
         """Start or resume a call; delete the results of another call, or with `fresh` all."""
         call = (RESULTS_VERSION, identity)
         previous = self._database.execute("select version, identity from call").fetchone()
@@ -159,6 +170,8 @@ def open_journal(table: Path | None, work: Work, *, fresh: bool = False) -> Iter
     ------
     ParameterError
         The journal cannot be written, or another process is writing it.
+    OSError
+        The disk is full.
 
     Examples
     --------
@@ -202,7 +215,7 @@ def temporary_journal(target: Path | None, identity: str) -> Iterator[Journal | 
 
     Raises
     ------
-    ParameterError
+    ParameterError, OSError
         As for `open_journal`.
     """
     if target is None:
@@ -232,19 +245,17 @@ def _opened(target: Path, identity: str, *, fresh: bool = False) -> Iterator[Jou
         new = not path.exists()
         try:
             try:
-                journal = Journal(path)
-                journal.begin(identity, fresh=fresh)
+                journal = Journal(path, identity, fresh=fresh)
             except sqlite3.DatabaseError as error:
                 if isinstance(error, sqlite3.OperationalError):
                     raise
                 path.unlink()
                 note(f"{path}: is damaged or of an earlier program; everything is computed again")
-                journal = Journal(path)
-                journal.begin(identity)
+                journal = Journal(path, identity)
         except sqlite3.Error as error:
             if new:
-                for part in (path, *(path.with_name(path.name + end) for end in ("-wal", "-shm"))):
-                    part.unlink(missing_ok=True)
+                for end in ("", "-wal", "-shm"):
+                    path.with_name(path.name + end).unlink(missing_ok=True)
             raise _cannot_write(path, error) from None
         with closing(journal):
             yield journal
@@ -254,10 +265,8 @@ def _cannot_write(path: Path | None, error: sqlite3.Error) -> Exception:
     """Return the error of a journal that cannot be written: of the machine, or of its path."""
     reason = f"cannot be written ({error})"
     # Extended codes have the primary one in their last byte.
-    if (getattr(error, "sqlite_errorcode", 0) & 0xFF) in (
-        sqlite3.SQLITE_FULL,
-        sqlite3.SQLITE_IOERR,
-    ):
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
         return OSError(errno.ENOSPC, reason, str(path))
     return ParameterError(f"{path}: {reason}")
 

@@ -151,10 +151,26 @@ def converter_step(recordings: Sequence[Recording], kind: str) -> float:
     >>> round(converter_step([run], "torque"), 6)
     0.05
     """
-    signals = [r.samples[row] for r in recordings if (row := r.first(kind)) is not None]
+    signals = channel_signals(recordings, kind)
     steps = np.array([_step(values) for x in signals if (values := np.unique(x)).size >= _FEWEST])
     middle = float(np.median(steps)) if steps.size else 0.0
     return middle if np.allclose(steps, middle, rtol=_SAME, atol=0.0) else 0.0
+
+
+def channel_signals(recordings: Sequence[Recording], kind: str) -> list[Array]:
+    """Return the samples of the first channel of a kind in the recordings that have one.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    kind : str
+
+    Returns
+    -------
+    list of ndarray, shape (n_samples,)
+        [unit of the channel]
+    """
+    return [r.samples[row] for r in recordings if (row := r.first(kind)) is not None]
 
 
 def _step(values: Array) -> float:

@@ -212,21 +212,26 @@ def _check_names(path: Path, before: Iterable[dict[str, object]], known: set[str
 
 
 def _note_other_recordings(
-    path: Path, before: Iterable[dict[str, object]], rows: Iterable[dict[str, object]]
+    path: Path, before: Iterable[dict[str, object]], rows: Iterable[Row]
 ) -> None:
-    """Note corrections that end elsewhere than the recording: it may be another of that name."""
-    ends: tuple[dict[str, float], dict[str, float]] = ({}, {})
-    for end, some in zip(ends, (filter(_is_by_a_person, before), rows), strict=True):
-        for row in some:
-            name, last = readable(str(row.get("file"))), place(row)[2]
-            end[name] = max(end.get(name, 0.0), last)
-    for name, last in ends[0].items():
-        duration = ends[1].get(name, math.inf)
-        if math.isfinite(last) and math.isfinite(duration) and last > duration + _SAME_END:
+    """Note corrections that end after the recording, which may be another one of that name."""
+    durations = _ends(rows)
+    for name, last in _ends(filter(_is_by_a_person, before)).items():
+        duration = durations.get(name, math.inf)
+        if math.inf > last > duration + _SAME_END:
             note(
                 f"{path}: the correction of {name} ends at {last:.2f} s, the recording at "
                 f"{duration:.2f} s; if it is another recording of that name, name another table"
             )
+
+
+def _ends(rows: Iterable[Row]) -> dict[str, float]:
+    """Return the largest end of the rows of each file [s]; infinite for a row without times."""
+    ends: dict[str, float] = {}
+    for row in rows:
+        name = readable(str(row.get("file")))
+        ends[name] = max(ends.get(name, 0.0), place(row)[2])
+    return ends
 
 
 def _ascii(name: str) -> str:

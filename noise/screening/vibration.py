@@ -291,13 +291,12 @@ def _outwards(
             at, growth, start = side[k]
             ran.add(k)
             course = running(rig, at, growth, start, started=lasting.get(last), again=k == 0)
-        elif first_dead < len(side) and side[first_dead][1] >= _DAMPED and first_dead not in jumped:
-            k = first_dead
-            at, growth, _ = side[k]
-            jumped.add(k)
-            course = _started(rig, at, growth, _JUMPS)
         else:
-            break
+            k = first_dead
+            if k in jumped or k == len(side) or side[k][1] < _DAMPED:
+                break
+            jumped.add(k)
+            course = _started(rig, *side[k][:2], _JUMPS)
         if course.lasts:
             lasting[k], last = course, k
             dead.pop(k, None)

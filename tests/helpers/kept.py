@@ -12,8 +12,7 @@ from noise.batch.journal import Journal, journal_path
 def staying_results(target):
     """Give the results of earlier calls, which stay."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    with closing(Journal(journal_path(target))) as journal:
-        journal.begin("same")
+    with closing(Journal(journal_path(target), "same")) as journal:
         yield journal
 
 

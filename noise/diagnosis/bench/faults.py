@@ -11,6 +11,7 @@ from models.recording import Recording
 from models.rig import Rig
 from models.units import CHANNEL_UNITS
 from noise.base.arrays import Array
+from noise.diagnosis.sensors import channel_signals
 from noise.diagnosis.signature import KINDS
 
 _LIVELY = 0.1
@@ -124,7 +125,7 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
         full_scale = rig.sensors.of(kind).full_scale or np.inf
         at = []
         for sign in (1.0, -1.0):
-            signals = [sign * x for x in _signals(recordings, kind)]
+            signals = [sign * x for x in channel_signals(recordings, kind)]
             limit = max((float(x.max()) for x in signals), default=np.inf)
             reached = (x for x in signals if float(x.max()) >= limit - _SAME * abs(limit))
             if limit < full_scale * (1.0 - _SAME) and any(map(_flat_top, reached)):
@@ -132,10 +133,6 @@ def clipped_channels(recordings: Sequence[Recording], rig: Rig) -> list[str]:
         if at:
             lines.append(f"channel {kind} clips at {' and '.join(at)} {CHANNEL_UNITS[kind]}")
     return lines
-
-
-def _signals(recordings: Sequence[Recording], kind: str) -> list[Array]:
-    return [r.samples[row] for r in recordings if (row := r.first(kind)) is not None]
 
 
 def _flat_top(x: Array) -> bool:
