@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
-"""Sums, medians and prominent maxima of many windows, independent of the other windows."""
+"""Sums and prominent maxima of many windows, independent of the other windows."""
 
 from __future__ import annotations
 
@@ -60,66 +60,6 @@ def _square(spectrum, least, power) -> None:
         for k in range(power.shape[1]):
             real, imaginary = spectrum[row, k].real, spectrum[row, k].imag
             power[row, k] = real * real + imaginary * imaginary + least
-
-
-def padded_rows(
-    values: NDArray[Any], row: NDArray[np.int64], counts: NDArray[np.int64], fill: float
-) -> NDArray[Any]:
-    """Return values of rows of different lengths as a padded matrix.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Values in order of the rows [any unit].
-    row : ndarray of int, shape (n,)
-        Row of each value, non-decreasing.
-    counts : ndarray of int, shape (n_rows,)
-        Number of values in each row.
-    fill : float
-        Padding [unit of the values].
-
-    Returns
-    -------
-    ndarray, shape (n_rows, max(1, counts.max()))
-        Padded rows [unit of the values].
-
-    Examples
-    --------
-    >>> padded_rows(np.array([1.0, 2.0, 3.0]), np.array([0, 0, 2]), np.array([2, 0, 1]), 0.0)
-    array([[1., 2.],
-           [0., 0.],
-           [3., 0.]])
-    """
-    out = np.full((counts.size, int(counts.max(initial=1))), fill, dtype=values.dtype)
-    out[row, np.arange(row.size) - (np.cumsum(counts) - counts)[row]] = values
-    return out
-
-
-def padded_medians(rows: NDArray[Any], counts: NDArray[np.int64]) -> NDArray[Any]:
-    """Return the median of the first values of each row, in their precision; NaN without values.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (n_rows, most)
-        Rows of `padded_rows`, padded with infinity, with one column at least [any unit].
-    counts : ndarray of int, shape (n_rows,)
-        Number of values in each row.
-
-    Returns
-    -------
-    ndarray, shape (n_rows,)
-        In the same [unit].
-
-    Examples
-    --------
-    >>> rows = np.array([[3.0, 1.0, 2.0, 8.0], [5.0, np.inf, np.inf, np.inf]])
-    >>> padded_medians(rows, np.array([4, 1]))
-    array([2.5, 5. ])
-    """
-    rows = np.sort(rows, axis=1)
-    row = np.arange(counts.size)
-    middle = rows[row, np.maximum(counts - 1, 0) // 2] + rows[row, counts // 2]
-    return np.asarray(np.where(counts > 0, middle / rows.dtype.type(2.0), rows.dtype.type(np.nan)))
 
 
 def prominent_maxima(

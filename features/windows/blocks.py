@@ -1,10 +1,10 @@
 # mypy: allow-untyped-defs, allow-incomplete-defs, allow-untyped-decorators
 """Blocks of a long signal at a common sampling rate, from which all window features are computed.
 
-Fourier transforms of single seconds give the part below 7 kHz at 16 kHz, its part above 2 kHz,
-where blows stand out from tones, and the power in two bands above 7 kHz. Each second is extended by
-a fifth on either side, half of it faded, which is discarded; such short transforms fit in the
-cache. Blocks lie on a fixed grid, so results do not depend on the part of a recording in memory.
+Fourier transforms of single seconds give the part below 7 kHz at 16 kHz, and its part above 2 kHz,
+where blows stand out from tones. Each second is extended by a fifth on either side, half of it
+faded, which is discarded; such short transforms fit in the cache. Blocks lie on a fixed grid, so
+results do not depend on the part of a recording in memory.
 Single precision, relative to the peak of the block, is twice as fast.
 
 The part below 7 kHz is A-weighted: in a car or hall, most power lies below 200 Hz, where noises do
@@ -50,9 +50,6 @@ _LOW = (110.0, 160.0)
 _HIGH_FROM = (1700.0, 2300.0)
 """Flank of the high-pass of the part with blows [Hz]."""
 
-_TOP_BANDS = ((7_000, 13_000), (13_000, 19_000))
-"""Bands above the common band [Hz]; they need rates of 29.8 kHz and 43.5 kHz."""
-
 _STORED_RATES = (8_000, 11_025, 12_000, 16_000, 22_050, 24_000, 32_000, 44_100)
 """Possible sampling rates of earlier storage [Hz]."""
 
@@ -74,9 +71,6 @@ class Block:
         Signal from 160 Hz to 7 kHz, A-weighted [share of `scale`].
     high : ndarray of float32, shape (n,)
         Part of it above 2 kHz [share of `scale`].
-    top : ndarray of float32, shape (n_frames, 2)
-        Power from 7 to 13 and from 13 to 19 kHz [share of `scale` squared]; NaN above the band of
-        the recording.
     scale : float
         Peak of the block [unit]; 0 if constant.
     limit : float
@@ -85,7 +79,6 @@ class Block:
 
     sound: NDArray[np.float32]
     high: NDArray[np.float32]
-    top: NDArray[np.float32]
     scale: float
     limit: float
 
@@ -129,9 +122,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     mean, scale = _mean_and_peak(samples)
     if not scale > 0.0:
         nothing = np.zeros(n, dtype=np.float32)
-        top = np.zeros((useful * FRAME_RATE, 2), dtype=np.float32)
-        top[:, [high > USABLE_SHARE * rate for _, high in _TOP_BANDS]] = np.nan
-        return Block(nothing, nothing, top, 0.0, 0.0)
+        return Block(nothing, nothing, 0.0, 0.0)
     # If a tenth of a second is no whole number of samples, the block is transformed at once.
     second, aside = (useful, MARGIN) if rate % 10.0 else (1, _ASIDE)
     seconds = second + 2.0 * aside
@@ -153,12 +144,7 @@ def resampled_block(samples: NDArray[np.float64], rate: float, useful: int) -> B
     sound = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
     bins[:, : high.size] *= high
     pulses = fft.irfft(bins, at_rate, axis=1)[:count, inside].reshape(-1)
-    top = np.full((useful * FRAME_RATE, len(_TOP_BANDS)), np.nan, dtype=np.float32)
-    for column, (bottom, end) in enumerate(_TOP_BANDS):
-        if end <= USABLE_SHARE * rate_held:
-            power = _band_power(spectrum, (bottom, end), seconds, aside, length)
-            top[:, column] = power[: len(top)]
-    return Block(sound, pulses, top, scale, min(WORKING_LIMIT, USABLE_SHARE * rate_held))
+    return Block(sound, pulses, scale, min(WORKING_LIMIT, USABLE_SHARE * rate_held))
 
 
 def _rate_held(spectrum: NDArray[np.complex64], seconds: float, rate: float) -> float:
@@ -221,32 +207,3 @@ def _gains(microhertz: int, seconds: float) -> tuple[NDArray[np.float32], NDArra
 def _flank(frequency: NDArray[Any], low: float, high: float) -> NDArray[np.float64]:
     share = np.clip((frequency - low) / (high - low), 0.0, 1.0)
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * share))
-
-
-def _band_power(
-    spectrum: NDArray[np.complex64],
-    band: tuple[int, int],
-    seconds: float,
-    aside: float,
-    length: int,
-) -> NDArray[np.float32]:
-    """Return the power of a band in each frame, from its decimated analytic signal."""
-    low, high = band
-    first, last = round(low * seconds), round(high * seconds)
-    analytic = fft.ifft(spectrum[:, first:last], axis=1) * np.float32(2.0 * (last - first) / length)
-    per_frame, margin = (high - low) // FRAME_RATE, round(aside * (high - low))
-    power = np.empty((len(analytic), (last - first - 2 * margin) // per_frame), dtype=np.float32)
-    _frame_powers(analytic, margin, per_frame, power)
-    return power.reshape(-1)
-
-
-@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
-def _frame_powers(analytic, margin, per_frame, power) -> None:
-    for row in range(power.shape[0]):
-        for frame in range(power.shape[1]):
-            start = margin + frame * per_frame
-            part = analytic[row, start : start + per_frame]
-            total = np.float32(0.0)
-            for i in range(part.size):
-                total += part[i].real * part[i].real + part[i].imag * part[i].imag
-            power[row, frame] = np.float32(0.5) * total / np.float32(per_frame)

@@ -188,7 +188,7 @@ def _describe(power, tops, magnitude, correlation, last, values) -> None:
 
 
 _MOST_DB = 60.0
-"""Range of levels below the loudest frame [dB]."""
+"""Largest change of level between frames [dB]."""
 
 _QUIETEST_BAND_DB = -70.0
 
@@ -217,16 +217,6 @@ class Course:
         n = len(level)
         relative = (level - level.max(axis=0)).astype(np.float64)
         weight = 10.0 ** (0.1 * relative)
-        above = np.maximum(relative, -_MOST_DB)
-        self.loud_share = (above > -10.0).sum(axis=0) / n
-        mean, square = ordered_sum(np.stack([above, above * above]), axis=1) / n
-        self.fluctuation = np.sqrt(np.maximum(square - mean**2, 0.0))
-        x = (np.arange(n) - 0.5 * (n - 1))[:, None]
-        self.trend = 100.0 * ordered_sum(x * above) / ordered_sum(x * x)
-        ordered = np.sort(level, axis=0)
-        quiet, median, loud = ordered[[int(0.1 * (n - 1)), n // 2, int(0.95 * (n - 1))]]
-        self.range = np.minimum(loud - quiet, _MOST_DB)
-        self.peak_above_median = np.minimum(loud - median, _MOST_DB)
         change = np.diff(level, axis=0)
         self.steepest_rise = np.clip(change.max(axis=0), 0.0, _MOST_DB)
         self.steepest_fall = np.clip(0.0 - change.min(axis=0), 0.0, _MOST_DB)
@@ -239,7 +229,6 @@ class Course:
         (
             (self.centroid, self.peak_frequency, self.pitch),
             (self.centroid_wander, self.peak_wander, self.pitch_wander),
-            (_, self.peak_drift, self.pitch_drift),
         ) = (
             np.split(columns, 3)
             for columns in _wander(
@@ -265,8 +254,7 @@ class Course:
         height = np.maximum(relative, _QUIETEST_BAND_DB)
         high = int(0.95 * (n - 1))
         ordered = np.partition(height, (n // 2, high), axis=1)
-        rises = ordered[:, high] - ordered[:, n // 2]
-        self.band_rise, self.band_rising = rises.max(axis=0), rises.argmax(axis=0) + 1
+        self.band_rise = (ordered[:, high] - ordered[:, n // 2]).max(axis=0)
         onsets = ordered_sum(np.maximum(np.diff(height, axis=1), 0.0)) / m
         self.onset, self.onset_mean = onsets.max(axis=0), ordered_sum(onsets) / (n - 1)
         # Share of the variance that is common to all bands.
@@ -279,22 +267,17 @@ class Course:
 
 def _wander(
     course: NDArray[np.float32], weight: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return weighted median, robust deviation and slope [1/s] of a trajectory with gaps.
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return weighted median and robust deviation of a trajectory with gaps.
 
-    A gap has no weight; without any weight, all three are NaN.
+    A gap has no weight; without any weight, both are NaN.
     """
     weight = np.where(weight > 0.0, weight, 0.0)
     whole = ordered_sum(weight)
     order, columns = np.argsort(course, axis=0), np.arange(course.shape[1])
     reached = np.cumsum(weight[order, columns], axis=0) >= 0.5 * whole
     median = course[order[reached.argmax(axis=0), columns], columns]
-    off = np.where(weight > 0.0, course - median, np.float32(0.0)).astype(np.float64)
-    i = np.arange(len(course))[:, None]
+    off = np.where(weight > 0.0, np.abs(course - median), np.float32(0.0)).astype(np.float64)
     whole = np.where(whole > 0.0, whole, np.nan)
-    x = i - ordered_sum(weight * i) / whole
-    deviation = ordered_sum(weight * np.minimum(np.abs(off), 1.0)) / whole
-    spread = weight * x * x
-    spread[0] += 1e-9
-    drift = 100.0 * ordered_sum(weight * x * np.clip(off, -0.5, 0.5)) / ordered_sum(spread)
-    return np.where(whole > 0.0, median, np.nan), deviation, drift
+    deviation = ordered_sum(weight * np.minimum(off, 1.0)) / whole
+    return np.where(whole > 0.0, median, np.nan), deviation

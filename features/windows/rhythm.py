@@ -13,16 +13,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy import fft, special
+from scipy import fft
 
-from features.windows.arithmetic import (
-    OCTAVES,
-    ordered_sum,
-    padded_medians,
-    padded_rows,
-    power_of,
-    prominent_maxima,
-)
+from features.windows.arithmetic import OCTAVES, power_of, prominent_maxima
 from features.windows.blocks import RATE
 from models.compilation import COMPILED
 
@@ -45,12 +38,6 @@ _PROMINENCE_DB = 6.0
 
 _PULSE_RANGE_DB = 20.0
 """Range of blows below the strongest [dB]."""
-
-_DECAY = 16
-"""Delay of the decay after a blow in samples: 4 ms."""
-
-_LEAST_BLOWS = 4
-"""Minimum number of blows to describe intervals."""
 
 _NO_BLOWS = -4.0
 """Rate without blows [octave re 10 per second]."""
@@ -84,15 +71,13 @@ def _mean_squares(signal, power) -> None:
         power[i] = total / np.float32(_STEP)
 
 
-def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.floating]]:
+def rhythm_of(power: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
     """Return rhythm features of windows of equal length.
 
     Parameters
     ----------
     power : ndarray of float32, shape (n_windows, n)
-        Envelopes from `envelope`, of at most 2000 samples; they are changed.
-    size : int
-        Number of samples for the deviation.
+        Envelopes from `envelope`, of at most 2000 samples.
 
     Returns
     -------
@@ -104,73 +89,35 @@ def rhythm_of(power: NDArray[np.float32], size: int) -> dict[str, NDArray[np.flo
     --------
     >>> blows = np.zeros((1, 2000), dtype=np.float32)
     >>> blows[0, ::80] = 1.0
-    >>> round(10.0 * 2.0 ** float(rhythm_of(blows, 2000)["period_rate"][0]))
+    >>> round(10.0 * 2.0 ** float(rhythm_of(blows)["period_rate"][0]))
     50
     """
     windows, n = power.shape
     varying = np.zeros((windows, _LENGTH), dtype=np.float32)
-    mean, spread = np.empty(windows), np.empty(windows)
-    _amplitudes(power, size, varying, mean, spread)
+    amplitude = np.sqrt(power)
+    varying[:, :n] = amplitude - amplitude.mean(axis=1, keepdims=True)
     modulation = power_of(fft.rfft(varying, axis=1))
-    correlation = fft.irfft(modulation, axis=1)[:, : 2 * _LAGS[1] + 2]
+    correlation = fft.irfft(modulation, axis=1)[:, : _LAGS[1] + 1]
     shares = np.add.reduceat(modulation, _MODULATION, axis=1)[:, :-1]
     shares /= np.maximum(shares.sum(axis=1, keepdims=True), 1e-30)
-    smooth, average, fourth = np.zeros_like(power), np.empty(windows), np.empty(windows)
-    _smooth(power, smooth, average, fourth)
+    smooth = power.copy()  # power of the last millisecond
+    for k in range(1, _STEP):
+        smooth[:, k:] += power[:, :-k]
+    average = smooth.mean(axis=1)
     described = (average > _SILENCE) & (n >= _LEAST_SAMPLES)
     smooth, average = smooth[described], average[described]
     peak = smooth.max(axis=1, initial=0.0)
+    strength, period = _strongest_lags(correlation[described], n)
     features = {
         "crest": 10.0 * np.log10(peak / average),
-        "kurtosis": 10.0 * np.log10(fourth[described] / n),
-        "concentration": _loudest_tenth(smooth) / (average * n),
-        **_blows(_level(smooth, peak)),
-        **_period(correlation[described], n),
+        "blow_rate": _blow_rate(smooth, peak),
+        "period_strength": strength,
+        "period_rate": OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period)),
     }
     return {
         **{name: _spread(values, described) for name, values in features.items()},
         **{f"modulation_{i}": share for i, share in enumerate(shares.T, start=1)},
-        "modulation_depth": spread / np.maximum(mean, 1e-20),
     }
-
-
-@njit(fastmath={"reassoc", "contract"}, cache=True, **COMPILED)
-def _amplitudes(power, size, varying, mean, spread) -> None:
-    """Fill in the amplitude of each window without its mean, the mean and the deviation."""
-    for w in range(power.shape[0]):
-        amplitude = varying[w]
-        n = power.shape[1]
-        total = np.float32(0.0)
-        for i in range(n):
-            amplitude[i] = np.sqrt(power[w, i])
-            total += amplitude[i]
-        middle = np.float32(total / n)
-        squares = np.float32(0.0)
-        for i in range(n):
-            amplitude[i] -= middle
-            squares += amplitude[i] * amplitude[i]
-        mean[w], spread[w] = middle, np.sqrt(squares / size)
-
-
-@njit(cache=True, **COMPILED)
-def _smooth(rows, smooth, average, fourth) -> None:
-    """Fill in the power of the last millisecond, its mean, and its relative sum of squares."""
-    n = rows.shape[1]
-    for w in range(rows.shape[0]):
-        power = 0.0  # double precision, against accumulated rounding
-        whole = np.float32(0.0)
-        for i in range(n):
-            power += rows[w, i]
-            if i >= _STEP:
-                power -= rows[w, i - _STEP]
-            smooth[w, i] = power if power > 0.0 else 0.0
-            whole += smooth[w, i]
-        mean = whole / n
-        squares = 0.0
-        for i in range(n):
-            share = smooth[w, i] / mean
-            squares += share * share
-        average[w], fourth[w] = mean, squares
 
 
 def _spread(values: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -180,36 +127,17 @@ def _spread(values: NDArray[Any], chosen: NDArray[np.bool_]) -> NDArray[np.float
     return out
 
 
-def _level(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return levels re the peak, at least -80 dB."""
-    share: NDArray[np.float32] = np.maximum(smooth / peak[:, None], np.float32(1e-8))
-    np.log(share, out=share)
-    share *= np.float32(10.0 / np.log(10.0))
-    return share
-
-
-def _loudest_tenth(smooth: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the sum over the loudest tenth, in increasing order."""
-    rest = smooth.shape[1] - max(1, smooth.shape[1] // 10)
-    return ordered_sum(np.sort(np.partition(smooth, rest, axis=1)[:, rest:], axis=1), axis=1)
-
-
-def _period(correlation: NDArray[np.float32], n: int) -> dict[str, NDArray[np.float64]]:
-    """Return the features of the period of the envelope: the shortest of nearly equal lags."""
-    strength, second = np.zeros(len(correlation)), np.full(len(correlation), np.nan)
-    period = np.zeros(len(correlation), dtype=np.int64)
-    _strongest_lags(correlation, n, strength, period, second)
-    rate = OCTAVES * np.log(ENVELOPE_RATE / (10.0 * period[period > 0]))
-    return {
-        "period_strength": np.where(correlation[:, 0] > 0.0, strength, np.nan),
-        "period_rate": _spread(rate, period > 0),
-        "second_period": second,
-    }
+def _strongest_lags(
+    correlation: NDArray[np.float32], n: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return strength and period of the envelope [samples]: the shortest of nearly equal lags."""
+    strength, period = np.zeros(len(correlation)), np.full(len(correlation), np.nan)
+    _search_lags(correlation, n, strength, period)
+    return np.where(correlation[:, 0] > 0.0, strength, np.nan), period
 
 
 @njit(cache=True, **COMPILED)
-def _strongest_lags(correlation, n, best, period, second) -> None:
-    """Fill in the best lag of each row, its strength, and the strength of twice the lag."""
+def _search_lags(correlation, n, best, period) -> None:
     least, most = _LAGS
     for w in range(correlation.shape[0]):
         c, power = correlation[w], correlation[w, 0]
@@ -225,58 +153,14 @@ def _strongest_lags(correlation, n, best, period, second) -> None:
                 strength = (c[lag] / power) * (n / (n - lag))
                 if strength > _BETTER * best[w]:
                     best[w], period[w] = strength, lag
-        twice = 2 * period[w]
-        if period[w] > 0 and twice + 1 < min(n, c.size):
-            far = max(c[twice - 1], c[twice], c[twice + 1])
-            second[w] = (far / power) * (n / (n - twice))
 
 
-def _blows(level: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
-    """Return the features of the blows, which are prominent maxima."""
-    windows, n = level.shape
+def _blow_rate(smooth: NDArray[np.float32], peak: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return the rate of prominent maxima of the power [octave re 10 per second]."""
+    windows, n = smooth.shape
+    level = 10.0 * np.log10(np.maximum(smooth / peak[:, None], np.float32(1e-8)))
     row, at = prominent_maxima(level, 0, n, _PROMINENCE_DB)
-    high = level[row, at] >= -_PULSE_RANGE_DB
-    row, at = row[high], at[high]
-    count = np.bincount(row, minlength=windows)
+    count = np.bincount(row[level[row, at] >= -_PULSE_RANGE_DB], minlength=windows)
     some = np.where(count > 0, count, np.nan)
-    height = level[row, at]
-    fall = height - level[row, np.minimum(at + _DECAY, n - 1)]
-    mean, square = (
-        ordered_sum(padded_rows(values.astype(np.float64), row, count, 0.0), axis=1) / some
-        for values in (height, height * height)
-    )
-    return {
-        "blow_rate": np.where(
-            count > 0, OCTAVES * np.log(some / n * (ENVELOPE_RATE / 10.0)), _NO_BLOWS
-        ),
-        "blow_heights": np.sqrt(np.maximum(square - mean**2, 0.0)),
-        "decay": padded_medians(padded_rows(fall, row, count, np.inf), count),
-        **_intervals(padded_rows(at, row, count, 0), count),
-    }
-
-
-def _intervals(at: NDArray[np.int64], count: NDArray[np.int64]) -> dict[str, NDArray[np.floating]]:
-    """Return the features of the intervals between at least four blows."""
-    several = count >= _LEAST_BLOWS
-    at, n = at[several], count[several] - 1
-    inside = np.arange(at.shape[1] - 1) < n[:, None]
-    gap = np.where(inside, np.diff(at, axis=1), 1).astype(np.float32)
-    # Logarithm of the C library in single precision; that of NumPy differs in the last digit.
-    logarithm = special.xlogy(np.float32(1.0), gap).astype(np.float64)
-    interval = (OCTAVES * logarithm).astype(np.float32)
-    last = np.take_along_axis(at, n[:, None], axis=1)
-    x = 0.5 * (at[:, 1:] + at[:, :-1] - at[:, :1] - last) / ENVELOPE_RATE
-    x = np.where(inside, x, 0.0)
-    square = (interval * interval).astype(np.float64)
-    sum_x, sum_y, sum_xx, sum_xy, sum_yy = (
-        ordered_sum(terms, axis=1)
-        for terms in (x, interval.astype(np.float64), x * x, x * interval, square)
-    )
-    change = np.where(inside[:, 1:], np.abs(np.diff(interval, axis=1)), np.float32(np.inf))
-    slope = (n * sum_xy - sum_x * sum_y) / np.maximum(n * sum_xx - sum_x * sum_x, 1e-12)
-    features = {
-        "blow_irregularity": padded_medians(change, n - 1),
-        "blow_glide": -slope,
-        "blow_spread": np.sqrt(np.maximum(sum_yy / n - (sum_y / n) ** 2, 0.0)),
-    }
-    return {name: _spread(values, several) for name, values in features.items()}
+    rate = OCTAVES * np.log(some / n * (ENVELOPE_RATE / 10.0))
+    return np.where(count > 0, rate, _NO_BLOWS)

@@ -73,7 +73,6 @@ def window_count(n: int) -> int:
 def describe_windows(
     sound: NDArray[np.float32],
     high: NDArray[np.float32],
-    top: NDArray[np.float32],
     *,
     scale: float,
     windows: int,
@@ -86,10 +85,8 @@ def describe_windows(
     sound, high : ndarray of float32, shape (n,)
         As in `features.windows.blocks.Block`, up to the end of the last window or of the
         recording.
-    top : ndarray of float32, shape (n_frames, 2)
-        As in `features.windows.blocks.Block`.
     scale : float
-        Unit of the three [unit of the signal].
+        Unit of the two [unit of the signal].
     windows : int
         Number of windows.
     limit : float
@@ -102,8 +99,7 @@ def describe_windows(
     Examples
     --------
     >>> hiss = np.random.default_rng(0).normal(size=16_000).astype(np.float32)
-    >>> nothing = np.full((100, 2), np.nan, dtype=np.float32)
-    >>> describe_windows(hiss, hiss, nothing, scale=1.0, windows=3, limit=7e3).features.shape[0]
+    >>> describe_windows(hiss, hiss, scale=1.0, windows=3, limit=7e3).features.shape[0]
     3
     """
     frames, power, half = describe_frames(sound, limit), envelope(sound), round(HOP * RATE)
@@ -112,7 +108,7 @@ def describe_windows(
     if which.size:
         # Neighbouring windows often contain the same event.
         events, of_event = np.unique(edges, axis=1, return_inverse=True)
-        longer = prolonged((sound, high, top), events[0], events[1], 2 * half)
+        longer = prolonged((sound, high), events[0], events[1], 2 * half)
         inside, numbers = describe_frames(longer[0], limit), np.arange(events.shape[1])
         parts = _parts(longer, inside, envelope(longer[0]), numbers, _APART, limit)
         features[which] = _columns(parts, numbers.size)[of_event.reshape(-1)]
@@ -120,7 +116,7 @@ def describe_windows(
     whole = (rest + 2) * half <= sound.size
     # Only the last window may be shorter.
     for numbers in filter(len, (rest[whole], rest[~whole])):
-        parts = _parts((sound, high, top), frames, power, numbers, _OVERLAPPING, limit)
+        parts = _parts((sound, high), frames, power, numbers, _OVERLAPPING, limit)
         features[numbers] = _columns(parts, numbers.size)
     unit = 20.0 * np.log10(max(scale, 1e-300))
     level = _means(power, windows, round(HOP * ENVELOPE_RATE))
@@ -130,36 +126,34 @@ def describe_windows(
     return WindowTable(features, (10.0 * np.log10(level + 1e-20) + unit).astype(np.float32), values)
 
 
-_FRAMES, _SEGMENTS, _POWERS, _TOPS = 47, 3, 2000, 50
-"""Numbers of frames, long spectra, envelope samples and values above 7 kHz per window."""
+_FRAMES, _SEGMENTS, _POWERS = 47, 3, 2000
+"""Numbers of frames, long spectra and envelope samples per window."""
 
-_OVERLAPPING, _APART = (25, 2, 1000, 25), (_FRAMES, _SEGMENTS, _POWERS, _TOPS)
+_OVERLAPPING, _APART = (25, 2, 1000), (_FRAMES, _SEGMENTS, _POWERS)
 """Their hops between windows, in a sound and for windows in separate rows."""
 
 
 def _parts(
-    sounds: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]],
+    sounds: tuple[NDArray[np.float32], NDArray[np.float32]],
     frames: Frames,
     power: NDArray[np.float32],
     numbers: NDArray[np.int64],
-    hops: tuple[int, int, int, int],
+    hops: tuple[int, int, int],
     limit: float,
 ) -> dict[str, Any]:
     """Return the parts of `features.table` for windows of equal length, by name.
 
     Frames and power are those of the sound; `numbers` are the indices of the windows.
     """
-    sound, high, top = sounds
+    sound, high = sounds
     segments, blows = segments_of(sound), envelope(high)
-    above = _above(top.reshape(-1, top.shape[-1]), power, blows)
 
     def rows(kind: int, length: int, count: int) -> NDArray[np.int64]:
         first = numbers * hops[kind]
         return np.asarray(first[:, None] + np.arange(min(length, count - int(first[-1]))))
 
     of_frames = rows(0, _FRAMES, len(frames.values))
-    of_power, size = rows(2, _POWERS, power.size), min(power.size, _POWERS)
-    of_above = rows(3, _TOPS, len(above))
+    of_power = rows(2, _POWERS, power.size)
     return {
         "course": Course(
             *(np.take(x.T, of_frames.T, axis=1) for x in (frames.values, frames.bands))
@@ -167,9 +161,8 @@ def _parts(
         if of_frames.shape[1] >= _LEAST_FRAMES
         else None,
         "lines": Lines(segments, rows(1, _SEGMENTS, len(segments)), limit),
-        "rhythm": rhythm_of(power[of_power], size),
-        "high": rhythm_of(blows[of_power], size),
-        "top": Top(above[of_above]) if of_above.shape[1] >= _LEAST_FRAMES else None,
+        "rhythm": rhythm_of(power[of_power]),
+        "high": rhythm_of(blows[of_power]),
     }
 
 
@@ -179,42 +172,6 @@ def _columns(parts: dict[str, Any], count: int) -> NDArray[np.float32]:
     for column, feature in enumerate(WINDOW_FEATURES):
         out[:, column] = feature.of(parts)
     return out
-
-
-def _above(
-    top: NDArray[np.float32], power: NDArray[np.float32], blows: NDArray[np.float32]
-) -> NDArray[np.float32]:
-    """Return the power below 7 kHz, above 2 kHz and in the two bands every 10 ms."""
-    each = ENVELOPE_RATE // FRAME_RATE
-    n = min(len(top), power.size // each)
-    means = [part[: n * each].reshape(n, each).mean(axis=1) for part in (power, blows)]
-    return np.stack([*means, *top[:n].T], axis=1)
-
-
-class Top:
-    """Features of the power above 7 kHz in windows, for `features.table`.
-
-    Parameters
-    ----------
-    above : ndarray of float32, shape (n_windows, n, 4)
-        Power below 7 kHz, above 2 kHz and in two bands above 7 kHz [unit^2].
-
-    Examples
-    --------
-    >>> Top(np.ones((1, 50, 4), dtype=np.float32)).shares.tolist()
-    [[0.0], [0.0], [0.0]]
-    """
-
-    def __init__(self, above: NDArray[np.float32]) -> None:
-        rows = np.ascontiguousarray(above.transpose(0, 2, 1))
-        sums = rows.sum(axis=2)
-        total = np.where(sums[:, 0] > 0.0, sums[:, 0], np.float32(np.nan))
-        self.shares = 10.0 * np.log10(np.maximum(sums[:, 1:] / total[:, None], np.float32(1e-6))).T
-        a, b = np.sqrt(rows[:, 2]), np.sqrt(rows[:, 1])
-        a = a - a.mean(axis=1, keepdims=True)
-        b = b - b.mean(axis=1, keepdims=True)
-        spread = np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
-        self.together = (a * b).sum(axis=1) / np.where(spread > 0.0, spread, np.float32(np.nan))
 
 
 def _means(power: NDArray[np.float32], windows: int, hop: int) -> NDArray[np.float32]:
@@ -341,13 +298,13 @@ def prolonged(
     begin: NDArray[np.int64],
     end: NDArray[np.int64],
     length: int,
-) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return events extended by reflection to the length of a window.
 
     Parameters
     ----------
-    parts : sequence of three ndarrays of float32
-        Sound, high part and top, as in `features.windows.table.describe_windows`.
+    parts : sequence of two ndarrays of float32
+        Sound and high part, as in `features.windows.table.describe_windows`.
     begin, end : ndarray of int, shape (n_events,)
         Samples of the sound.
     length : int
@@ -355,29 +312,24 @@ def prolonged(
 
     Returns
     -------
-    sound, high, top : ndarray of float32
-        Of shape (n_events, length) twice and (n_events, n_frames, 2), in the unit of the parts,
-        such as [Pa].
+    sound, high : ndarray of float32, shape (n_events, length)
+        In the unit of the parts, such as [Pa].
 
     Examples
     --------
     >>> tone = np.cos(np.pi / 4 * np.arange(8000)).astype(np.float32)
-    >>> top = np.zeros((50, 2), dtype=np.float32)
-    >>> longer = prolonged((tone, tone, top), np.array([317]), np.array([1700]), 8000)
-    >>> np.allclose(longer[0][0], tone), longer[2].shape
-    (True, (1, 50, 2))
+    >>> longer = prolonged((tone, tone), np.array([317]), np.array([1700]), 8000)
+    >>> np.allclose(longer[0][0], tone)
+    True
     """
-    hop = RATE // FRAME_RATE
     # A tone that is reflected at a peak has no jump of phase.
     peaks = [
         (a + _highest(parts[0][a : a + _SEARCH]), b - _highest(parts[0][b - _SEARCH : b][::-1]))
         for a, b in zip(begin.tolist(), np.minimum(end, len(parts[0])).tolist(), strict=True)
     ]
     begin, end = np.array(peaks, dtype=np.int64).reshape(-1, 2).T
-    first = begin // hop
-    sound, high = (part[_mirrored(begin, end, length, len(part))] for part in parts[:2])
-    last = np.maximum(end // hop, first + 2)
-    return sound, high, parts[2][_mirrored(first, last, length // hop, len(parts[2]))]
+    sound, high = (part[_mirrored(begin, end, length, len(part))] for part in parts)
+    return sound, high
 
 
 def _mirrored(

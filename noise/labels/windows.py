@@ -183,19 +183,12 @@ class _Resampled:
         ]
         scale = max(block.scale for block in held)
         shares = [np.float32(block.scale / scale if scale > 0.0 else 0.0) for block in held]
-        sound, high, top = (
-            np.concatenate([part * factor for part, factor in zip(parts, factors, strict=True)])
-            for parts, factors in (
-                ([block.sound for block in held], shares),
-                ([block.high for block in held], shares),
-                ([block.top for block in held], [share**2 for share in shares]),
-            )
+        sound, high = (
+            np.concatenate([part * share for part, share in zip(parts, shares, strict=True)])[:size]
+            for parts in ([block.sound for block in held], [block.high for block in held])
         )
-        frames = math.ceil(size * FRAME_RATE / RATE)
         limit = max(block.limit for block in held) or self._limit
-        return describe_windows(
-            sound[:size], high[:size], top[:frames], scale=scale, windows=windows, limit=limit
-        )
+        return describe_windows(sound, high, scale=scale, windows=windows, limit=limit)
 
     def _block(self, number: int) -> dict[int, Block]:
         """Return one block of all channels, from a cache of the last few."""
