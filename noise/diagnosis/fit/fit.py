@@ -427,24 +427,6 @@ def fit_effects(
     return Fitted(_settled(comparison, few, best), comparison, few)
 
 
-def fit_closer(comparison: CaseComparison, chosen: Sequence[int], model: Model) -> Fitted:
-    """Refine the numbers of a fitted model by small steps; offsets of 0 stay.
-
-    Parameters
-    ----------
-    comparison : CaseComparison
-        In whose floors the fit is.
-    chosen : sequence of int
-        Recordings to fit to.
-    model : Model
-    """
-    few = different(comparison, chosen)
-    numbers = _numbers(comparison, model)
-    if any(model.offsets):
-        numbers = [*_offsets(), *numbers]
-    return Fitted(_searched(comparison, few, model, numbers, _SHRINK[1:])[1], comparison, few)
-
-
 def stated_candidates(effect: Effect, seed: int) -> list[LawSpec]:
     """Return the starting forms of an effect for a fit.
 

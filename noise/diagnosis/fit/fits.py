@@ -2,8 +2,8 @@
 
 Illustrations are held-out recordings beside simulations of them, to be seen and heard.
 
-The improved rig is a fit in the form of a rig file that closes the gap. What fits best need not
-predict best: parameters that repeats scatter in are soon fitted to the scatter of a few recordings.
+The improved rig is a fit as it is, in the form of a rig file that closes the gap. What fits best
+need not predict best: parameters that repeats scatter in are soon fitted to the scatter of a few.
 So what is simpler is taken where it closes the gap: parameters alone, then effects alone, then
 both. Of what no file can state the fit is repeated in the simulator's own forms.
 """
@@ -28,7 +28,7 @@ from noise.diagnosis.first_answer import first_answer
 from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import closed_interval, closed_share, rms
 from noise.diagnosis.fit.decide import CaseFits, HypothesisFit, Judged
-from noise.diagnosis.fit.fit import Fitted, fit_closer, fit_effects
+from noise.diagnosis.fit.fit import Fitted, different, fit_effects
 from noise.diagnosis.outcome import Diagnosis, EffectFinding, Illustration, Improvement
 from noise.diagnosis.simulated.model_runs import OFFSETS, Model, ModelRuns, with_effects
 
@@ -236,16 +236,15 @@ def _improved_rig(
             # In floors of its own: those of the rig file hide what it leaves where the rig is
             # about to change its regime.
             own = comparison.compared_about(model)
-            fitted = fit_closer(own, fitted_to, model)
-            after = rms(own.squared(fitted.model, held))
-            made = _made(case, fitted.model) if after <= _CLOSED else None
+            after = rms(own.squared(model, held))
+            made = _made(case, model) if after <= _CLOSED else None
             if made is None:
                 continue
             answer = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
             if answer.verdict:
                 continue
             factors, rig = made
-            spread = fitted.spread
+            spread = Fitted(model, own, different(own, fitted_to)).spread
             return Improvement(
                 rig=rig,
                 factors=factors,
