@@ -10,8 +10,8 @@ oscillation about the mean from 5 Hz to 7 kHz, so neither gain nor a drifting of
 is missing if the rate does not reach it, or if the signal is too short for four bins in it.
 
 The features of windows are the input of the classifier. They are computed for hours of sound at
-once (`features.windows`), A-weighted, in single precision and from other segments; a feature of the
-same name there is the same quantity but another number, and neither can replace the other.
+once (`features.windows`), A-weighted, in single precision and from other segments. A feature of the
+same name there is another number, of some by another formula; neither can replace the other.
 
 A recording of 2^21 samples or more (44 s at 48 kHz) is analysed in equal pieces of at most 2^19,
 whose features are combined.

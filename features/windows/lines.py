@@ -12,22 +12,23 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from features.windows.arithmetic import OCTAVES, ordered_sum, power_of, prominent_maxima
+from features.windows.blocks import RATE
 
 _SEGMENT = 4000
 _LENGTH = 4096
-SEGMENT_HOP = 2000
+_SEGMENT_HOP = 2000
 """Hop of the long spectra in samples."""
 
-SPACING = 16_000 / _LENGTH
+_SPACING = RATE / _LENGTH
 """Spacing of the bins [Hz]."""
 
-FIRST = 38
+_FIRST = 38
 """First described bin: 148 Hz."""
 
-LOBE = 3
+_LOBE = 3
 """Bins of a line on either side."""
 
-BLOCK = 32
+_BLOCK = 32
 """Bins per block, whose median is the floor."""
 
 _LEAST = np.float32(1e-20)
@@ -61,11 +62,11 @@ def segments_of(sound: NDArray[np.float32]) -> NDArray[np.float32]:
     (3, 4000)
     """
     n = sound.shape[-1]
-    count = max(1, -(-(n - SEGMENT_HOP) // SEGMENT_HOP))
-    if lacking := max(0, (count - 1) * SEGMENT_HOP + _SEGMENT - n):
+    count = max(1, -(-(n - _SEGMENT_HOP) // _SEGMENT_HOP))
+    if lacking := max(0, (count - 1) * _SEGMENT_HOP + _SEGMENT - n):
         sound = np.concatenate([sound, np.zeros((*sound.shape[:-1], lacking), np.float32)], axis=-1)
     segments = np.lib.stride_tricks.sliding_window_view(sound, _SEGMENT, axis=-1)
-    return segments[..., ::SEGMENT_HOP, :][..., :count, :].reshape(-1, _SEGMENT)
+    return segments[..., ::_SEGMENT_HOP, :][..., :count, :].reshape(-1, _SEGMENT)
 
 
 _WINDOW = np.hanning(_SEGMENT + 2)[1:-1].astype(np.float32)
@@ -95,23 +96,23 @@ class Lines:
     def __init__(self, segments: NDArray[np.float32], at: NDArray[np.int64], limit: float) -> None:
         needed, row = np.unique(at, return_inverse=True)
         spectra = power_of(fft.rfft(segments[needed] * _WINDOW, n=_LENGTH, axis=1))
-        end = max(FIRST + BLOCK, min(int(limit / SPACING) + 1, spectra.shape[1] - 2))
+        end = max(_FIRST + _BLOCK, min(int(limit / _SPACING) + 1, spectra.shape[1] - 2))
         power = np.full((len(at), end + 2), _LEAST, dtype=np.float32)
         for rows in row.reshape(at.shape).T:
             power += spectra[rows, : end + 2]
         level = np.asarray(10.0 * np.log10(power), dtype=np.float32)
         self._power = np.zeros((len(at), end + 1))
-        np.cumsum(power[:, FIRST:end], axis=1, out=self._power[:, FIRST + 1 :])
-        total, inside = self._power[:, -1], level[:, FIRST:end]
-        self.flatness = inside.mean(axis=1) - 10.0 * np.log10(total / (end - FIRST))
+        np.cumsum(power[:, _FIRST:end], axis=1, out=self._power[:, _FIRST + 1 :])
+        total, inside = self._power[:, -1], level[:, _FIRST:end]
+        self.flatness = inside.mean(axis=1) - 10.0 * np.log10(total / (end - _FIRST))
         self.slope = _slope(inside)
         # Levels above 1, 2 and 4 kHz.
         self.octaves_above = [
             _decibel(1.0 - self._power[:, min(edge, end)] / total) for edge in _KILOHERTZ
         ]
-        top, windows = FIRST + inside.argmax(axis=1), np.arange(len(at))
+        top, windows = _FIRST + inside.argmax(axis=1), np.arange(len(at))
         # The strongest line is as wide as a friction tone wanders.
-        reach = LOBE + (0.005 * top).astype(np.int64)
+        reach = _LOBE + (0.005 * top).astype(np.int64)
         line = self._between(windows, top - reach, top + reach + 1)
         above = total - self._power[windows, np.minimum(top + reach + 1, end)]
         self.line_share, self.above_line = line / total, _decibel(above / line)
@@ -119,17 +120,17 @@ class Lines:
         bend = left - 2.0 * middle.astype(np.float64) + right
         shift = 0.5 * (left - right) / np.where(bend < -1e-6, bend, np.inf)
         place = np.asarray(top + np.clip(shift, -0.5, 0.5), dtype=np.float64)
-        self.frequency = OCTAVES * np.log(place * (SPACING / 1000.0))
+        self.frequency = OCTAVES * np.log(place * (_SPACING / 1000.0))
         floor = _floor(level, end)
-        self.prominence = middle - floor[windows, (top - FIRST) // BLOCK]
-        row, at = prominent_maxima(level, FIRST, end, _STANDS_DB, pointed=True)
+        self.prominence = middle - floor[windows, (top - _FIRST) // _BLOCK]
+        row, at = prominent_maxima(level, _FIRST, end, _STANDS_DB, pointed=True)
         height = level[row, at] - middle[row]
         lines = (height >= -_RANGE_DB) & (
-            level[row, at] - floor[row, (at - FIRST) // BLOCK] >= _STANDS_DB
+            level[row, at] - floor[row, (at - _FIRST) // _BLOCK] >= _STANDS_DB
         )
         row, at, height = row[lines], at[lines], height[lines]
         self.count = np.bincount(row, minlength=len(windows))
-        share = self._between(row, at - LOBE, at + LOBE + 1)
+        share = self._between(row, at - _LOBE, at + _LOBE + 1)
         self.share = np.minimum(1.0, np.bincount(row, share, len(windows)) / total)
         self._find_fundamental(row, at, height, place)
 
@@ -138,7 +139,7 @@ class Lines:
     ) -> NDArray[np.float64]:
         """Return the power of windows in the bins from `first` to before `last`."""
         end = self._power.shape[1] - 1
-        low, high = np.clip(first, FIRST, end), np.clip(last, FIRST, end)
+        low, high = np.clip(first, _FIRST, end), np.clip(last, _FIRST, end)
         return np.asarray(self._power[row, high] - self._power[row, low])
 
     def _find_fundamental(
@@ -160,19 +161,19 @@ class Lines:
         fits = (order >= 1.0) & (off <= 1.5 + 0.006 * at[:, None])
         weight = np.where(fits, 10.0 ** (0.1 * height.astype(np.float64))[:, None], 0.0)
         value = np.stack([np.bincount(row, column, len(place)) for column in weight.T], axis=1)
-        value = np.where(base * SPACING < _LOWEST, 0.0, value * _LOWER**_DIVISORS)
+        value = np.where(base * _SPACING < _LOWEST, 0.0, value * _LOWER**_DIVISORS)
         rows = np.flatnonzero(value.max(axis=1) > 0.0)
         fundamental = base[rows, value[rows].argmax(axis=1)]
         end = self._power.shape[1] - 1
         multiples = np.arange(1, int(end / fundamental.min(initial=end)) + 1)
         centre = np.rint(multiples * fundamental[:, None]).astype(np.int64)
-        reach = np.minimum(LOBE, (0.4 * fundamental).astype(np.int64))[:, None]
-        counted = (centre >= FIRST + LOBE) & (centre < end - LOBE)
+        reach = np.minimum(_LOBE, (0.4 * fundamental).astype(np.int64))[:, None]
+        counted = (centre >= _FIRST + _LOBE) & (centre < end - _LOBE)
         power = self._between(rows[:, None], centre - reach, centre + reach + 1)
         share = ordered_sum(np.where(counted, power, 0.0), axis=1) / self._power[rows, -1]
-        bins = (counted * (2 * reach + 1)).sum(axis=1) / (end - FIRST)
+        bins = (counted * (2 * reach + 1)).sum(axis=1) / (end - _FIRST)
         self.fundamental, self.harmonic_share, self.harmonic_gain = np.full((3, len(place)), np.nan)
-        self.fundamental[rows] = OCTAVES * np.log(fundamental * (SPACING / 100.0))
+        self.fundamental[rows] = OCTAVES * np.log(fundamental * (_SPACING / 100.0))
         self.harmonic_share[rows] = np.minimum(1.0, share)
         self.harmonic_gain[rows] = np.minimum(1.0, share) - bins
 
@@ -183,17 +184,17 @@ def _decibel(share: NDArray[np.floating]) -> NDArray[np.float64]:
 
 def _slope(level: NDArray[np.float32]) -> NDArray[np.floating]:
     """Return the slope of the mean levels of blocks over octaves [dB/octave]."""
-    count = level.shape[1] // BLOCK
-    means = level[:, : count * BLOCK].reshape(len(level), count, BLOCK).mean(axis=2)
-    x = OCTAVES * np.log(FIRST + (np.arange(count) + 0.5) * BLOCK)
+    count = level.shape[1] // _BLOCK
+    means = level[:, : count * _BLOCK].reshape(len(level), count, _BLOCK).mean(axis=2)
+    x = OCTAVES * np.log(_FIRST + (np.arange(count) + 0.5) * _BLOCK)
     x -= x.mean()
     return ordered_sum(means * x, axis=1) / max(float(x @ x), 1e-9)
 
 
 def _floor(level: NDArray[np.float32], end: int) -> NDArray[np.float32]:
     """Return the median level of each block; a short last block has that of the block before."""
-    half, rest = BLOCK // 2, (end - FIRST) % BLOCK  # one whole block at least
-    blocks = level[:, FIRST : end - rest].reshape(len(level), -1, BLOCK)
+    half, rest = _BLOCK // 2, (end - _FIRST) % _BLOCK  # one whole block at least
+    blocks = level[:, _FIRST : end - rest].reshape(len(level), -1, _BLOCK)
     middle = np.sort(blocks, axis=2)  # faster than a partition of so few
     floor = (middle[:, :, half - 1] + middle[:, :, half]) / np.float32(2.0)
     if rest >= half:

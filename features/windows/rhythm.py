@@ -2,8 +2,7 @@
 """Rhythm of blows in a window, which distinguishes a creak from rain and from tones.
 
 It is computed from the power of the sound above 2 kHz, and of all of it, every 0.25 ms. A creak is
-a series of blows with similar consecutive intervals and a gliding rate; intervals of rain are
-random, and those of a clock or an engine are constant.
+a series of blows that stand out and recur; those of rain do not recur.
 """
 
 from __future__ import annotations
@@ -82,7 +81,7 @@ def rhythm_of(power: NDArray[np.float32]) -> dict[str, NDArray[np.floating]]:
     Returns
     -------
     dict of str to ndarray, shape (n_windows,)
-        Features by name, as in `features.table`, in their units [dB, octave, 1/s or -]; most are
+        Features by name, as in `features.table`, in their units [dB, octave or -]; most are
         NaN for less than 32 samples and for silence.
 
     Examples

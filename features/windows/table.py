@@ -204,9 +204,6 @@ _DROP_DB = 14.0
 _GAP = 18
 """Maximum number of frames between blows of a creak."""
 
-_OF_WINDOW = 47
-"""Number of whole frames in a window."""
-
 _LEAST, _MOST = 8, 40
 """Minimum and maximum number of frames of an extended event."""
 
@@ -244,18 +241,18 @@ def events_within(
     ([3, 4], [1.12, 1.12], [1.3, 1.3])
     """
     first = np.round(start * FRAME_RATE).astype(np.int64)
-    silence = np.full((_AFTER + _OF_WINDOW, bands.shape[1]), -200.0, dtype=np.float32)
+    silence = np.full((_AFTER + _FRAMES, bands.shape[1]), -200.0, dtype=np.float32)
     around = np.concatenate([silence[:_BEFORE], bands, silence]).T
     size = _BEFORE + _AFTER
     context = np.lib.stride_tricks.sliding_window_view(around, size, axis=1)[:, first]
-    inside = slice(_BEFORE, _BEFORE + _OF_WINDOW)
+    inside = slice(_BEFORE, _BEFORE + _FRAMES)
     rank = int(_FLOOR * (size - 1))
     floor = np.partition(context, rank, axis=2)[:, :, rank]
     floor = np.maximum(floor, context[:, :, inside].max(axis=(0, 2)) - _RANGE_DB)
     above = (context - floor[:, :, None]).max(axis=0)
     ends = np.zeros((len(first), 2), dtype=np.int64)
     highest = above[:, inside].max(axis=1)
-    _longest(above, highest, np.minimum(len(bands) - first, _OF_WINDOW), ends)
+    _longest(above, highest, np.minimum(len(bands) - first, _FRAMES), ends)
     which = np.flatnonzero(ends[:, 1])
     begin, end = (ends[which] + (first[which] - _BEFORE)[:, None]).T
     hop = RATE // FRAME_RATE
@@ -283,8 +280,8 @@ def _longest(above, highest, inside, ends) -> None:
                 if b - a > longest:
                     longest = b - a
                     # As much of it as fits into a window, including the part in this window.
-                    ends[w, 0] = max(first, b - _OF_WINDOW)
-                    ends[w, 1] = min(last, ends[w, 0] + _OF_WINDOW)
+                    ends[w, 0] = max(first, b - _FRAMES)
+                    ends[w, 1] = min(last, ends[w, 0] + _FRAMES)
                 first = -1
             if first < 0:
                 first = i

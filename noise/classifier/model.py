@@ -20,7 +20,7 @@ from noise.base.model_file import ModelKind, load_model, save_model
 from noise.base.trees import BoostedTrees
 
 CLASSIFIER = ModelKind(
-    "classifier", 5, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
+    "classifier", 6, "bushing-noise train --out", ("noise.classifier", "classifier.npz")
 )
 
 Thresholds = tuple[float, float, float]
@@ -173,7 +173,7 @@ def has_more_than_sound(features: NDArray[np.float32], names: Sequence[str]) -> 
     Examples
     --------
     >>> features = np.array([[1.0, np.nan], [1.0, 2.0]], dtype=np.float32)
-    >>> has_more_than_sound(features, ["pressure_range", "torque_mean"]).tolist()
+    >>> has_more_than_sound(features, ["pressure_flux", "torque_mean"]).tolist()
     [False, True]
     """
     others = [i for i, name in enumerate(names) if not name.startswith("pressure_")]

@@ -70,8 +70,10 @@ def _note_false_names(counts: Mapping[str, Any], sensitivity: float) -> None:
     if counts:
         nearest = min(counts, key=lambda stated: abs(math.log(float(stated) / sensitivity)))
         rate = counts[nearest]
+        other = "" if float(nearest) == sensitivity else ", the nearest that was counted"
         note(
-            f"at a sensitivity of {nearest}, real background sounds of these surroundings got "
+            f"without logged conditions and at a sensitivity of {nearest}{other}, real "
+            "background sounds of these surroundings got "
             f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} "
             f"at 95 %: {rate['names']} in {rate['hours']:g} h)"
         )

@@ -31,6 +31,7 @@ def label(
     *,
     classifier: str | Path | None = None,
     full_scale: float | None = None,
+    sensitivity: float = 1.0,
     surroundings: str | None = None,
     out: str | Path | None = None,
     fresh: bool = False,
@@ -46,6 +47,8 @@ def label(
         File that ``bushing-noise train`` made; by default the shipped one.
     full_scale : float, optional
         Sound pressure of a full-scale sample [Pa], for sound files that do not say it.
+    sensitivity : float
+        Factor on the odds of a noise, from 0.1 to 10 [-].
     surroundings : {"any", "car", "rig"}, optional
         Place of the recording, which decides the expected background sounds; by default ``rig`` if
         an operating condition is logged, else ``any``.
@@ -84,6 +87,8 @@ def label(
     """
     if workers < 1:
         raise ParameterError(f"workers = {workers} must be 1 or more")
+    if not 0.1 <= sensitivity <= 10.0:
+        raise ParameterError(f"sensitivity = {sensitivity:g} must be from 0.1 to 10")
     check_table_path(out)
     given = [paths] if isinstance(paths, str | Path) else paths
     jobs = find_jobs([Path(path) for path in given])
@@ -94,7 +99,8 @@ def label(
     work = Labelling(
         None if classifier is None else Path(classifier).absolute(),  # for other processes
         full_scale,
-        surroundings=surroundings,
+        sensitivity,
+        surroundings,
     )
     work.prepare()
     if out is not None:

@@ -30,8 +30,8 @@ from noise.recordings.files import names_channels, open_blocks
 from noise.recordings.rotation import agrees, as_logged
 
 _SHORTEST = 0.1
-"""Minimum duration of a reliable label [s]: shorter events are not described on their own
-(`features.windows.table`); squeals of the rig of this duration are labelled correctly."""
+"""Duration up to which the label of a segment is not reliable [s]: a segment is up to 0.02 s longer
+than its sound, and squeals of the rig are labelled correctly from 0.1 s on."""
 
 _DIGITS = 4
 """Significant digits of inferred values, more than their precision."""
@@ -127,8 +127,8 @@ def _row(
             row[f"{column}_source"] = "inferred"
     assumed = f"conditions inferred {ASSUMED}" if assumes_material(row) else ""
     short = (
-        f"shorter than {_SHORTEST:g} s: its name is not to be trusted"
-        if segment.label in NAMED and segment.end - segment.start < _SHORTEST
+        f"no longer than {_SHORTEST:g} s: its name is not to be trusted"
+        if segment.label in NAMED and round(segment.end - segment.start, 3) <= _SHORTEST
         else ""
     )
     remarks = [text for text in (speed_remark(blocks, speed), assumed, short) if text]

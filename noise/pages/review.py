@@ -83,7 +83,7 @@ class Review:
     sounds : int
         Number of playable sounds.
     longest : float
-        Longest excerpt that the size of the page allows [s].
+        Limit of excerpts that the size of the page sets, as far as it cuts one [s].
     refused : tuple of Refusal
         Refused inputs.
 
@@ -202,7 +202,8 @@ def review(
     )
     target = page_path(Path(out))
     write_page(target, html)
-    return Review(target, len(clips), longest, tuple(refused))
+    cut = any(entry.duration > longest for entry in entries.values())
+    return Review(target, len(clips), longest if cut else seconds, tuple(refused))
 
 
 def page_path(out: Path) -> Path:

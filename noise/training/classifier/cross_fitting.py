@@ -320,7 +320,7 @@ def _thresholds(
 
     Those of a rig alone determine its threshold of a squawk, those of any place all others.
     Backgrounds of the surroundings alone are too few: their thresholds give false names for 11 of
-    219 sounds of left-out sources in a car, and for 11 of 175 at a rig; these give 3 and 4.
+    219 sounds of left-out sources in a car, and for 11 of 175 at a rig; these give 4 and 5.
     """
     creak, squawk, squeal = fit_thresholds(
         [b.probabilities for b in backgrounds["any"] if b.part != without]

@@ -217,7 +217,7 @@ def train(
 
     Examples
     --------
-    It takes some fifteen minutes:
+    It takes some twenty minutes:
 
     >>> train(seed=1).save("mine.npz")  # doctest: +SKIP
     """
