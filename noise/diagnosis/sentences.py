@@ -57,7 +57,9 @@ an error of a sensor looks like one of the transfer path to it."""
 _CANDIDATES = 3
 """Number of causes in a sentence if none is likely; assumed."""
 
-_MAY_BE = {"unknown": "something unknown", "parameters": "parameters that are off"}
+_MAY_BE = {
+    "none": "chance", "unknown": "something unknown", "parameters": "parameters that are off"
+}  # fmt: skip
 
 _LIKELY = 0.5
 """Least probability of a cause that is named [-]: it is likelier than not."""
@@ -164,7 +166,7 @@ def agreement_sentence(diagnosis: Diagnosis) -> str:
             channel = max(channels, key=lambda name: channels[name])
             sentence += f", most in the {channel} ({gap_number(channels[channel])} times)"
         sentence += "."
-    if diagnosis.verdict and diagnosis.p_value <= 1.0:
+    if diagnosis.verdict and diagnosis.p_value <= 1.0 and n > 1:
         sentence += (
             f" All recordings together deviate {gap_number(diagnosis.gap)} times as much "
             f"({p_number(diagnosis.p_value)})."
@@ -236,16 +238,20 @@ def _in_stage(diagnosis: Diagnosis) -> str:
 
 def _differs(diagnosis: Diagnosis) -> bool:
     """Return whether the gap is larger than that of repeats, whatever the verdict."""
-    return diagnosis.p_value <= SURE or diagnosis.gap > AGREES
+    return (diagnosis.p_value <= SURE and diagnosis.gap > 1.0) or diagnosis.gap > AGREES
 
 
 def _no_gap(diagnosis: Diagnosis) -> str:
     sentence = "Recordings and simulation differ as repeats do: nothing is to be explained"
     if _differs(diagnosis):
         sentence = (
-            "Recordings and simulation differ by more than simulated repeats do, but not as any "
-            "cause would have it"
+            "Recordings and simulation differ by more than simulated repeats do, but no cause "
+            "stands out"
         )
+        chances = diagnosis.probabilities
+        ranked = sorted(chances, key=lambda name: -chances[name])[:2]
+        if ranked:
+            sentence += f": it may be {joined([_possible(diagnosis, n) for n in ranked], 'or')}"
     if math.isfinite(diagnosis.gap):
         times = gap_number(diagnosis.gap, ".2f")
         sentence += f" ({times} times as much as repeats, {p_number(diagnosis.p_value)})"
@@ -293,7 +299,9 @@ def _parameters(diagnosis: Diagnosis) -> str:
         )
     which = f": {joined(parts)}" if parts else ""
     likely = _likely(diagnosis, "parameters")
-    return f"No effect is missing; values of the rig file are off{likely}{which}."
+    if not which and diagnosis.parameters:
+        which = ": which of them, the fit does not tell"
+    return f"Values of the rig file are off, rather than an effect missing{likely}{which}."
 
 
 def _unlikely(diagnosis: Diagnosis) -> str:
@@ -302,13 +310,18 @@ def _unlikely(diagnosis: Diagnosis) -> str:
     named = () if diagnosis.verdict == ("unknown",) else diagnosis.verdict
     ranked = sorted(chances, key=lambda name: (name not in named, -chances[name]))
     n = max(_CANDIDATES, len(diagnosis.verdict))
-    listed = [f"{_MAY_BE.get(name) or cause_of(name).name} ({percent(chances[name])})"
-              for name in ranked[:n]]  # fmt: skip
+    listed = [_possible(diagnosis, name) for name in ranked[:n]]
     sentence = f"Something differs{_in_stage(diagnosis)}; it may be {joined(listed, 'or')}"
     if stages := _contradicted(diagnosis):
         does = "does" if len(stages) == 1 else "do"
         sentence += f", although {joined(stages)} {does} not differ beyond what repeats do"
     return f"{sentence}."
+
+
+def _possible(diagnosis: Diagnosis, name: str) -> str:
+    """Return a possible cause with its probability."""
+    words = _MAY_BE.get(name) or cause_of(name).name
+    return f"{words} ({percent(diagnosis.probabilities[name])})"
 
 
 def _likely(diagnosis: Diagnosis, name: str, clause: str = "") -> str:
@@ -388,6 +401,11 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
     return f"{words} ({interval}{low} to {high})" if low != high else words
 
 
+def _may_be_nothing(finding: EffectFinding) -> bool:
+    low = finding.closed_low
+    return low is not None and low <= _NOTHING < (finding.closed or 0.0)
+
+
 def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
     """Return how far a fit with an effect closes the gap; empty if that was not determined.
 
@@ -408,7 +426,8 @@ def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
     sentences = []
     if finding.closed is not None:
         words = closed_words(finding, " of the deviation beyond that of repeats", "90 % interval ")
-        sentences.append(f"{fit} explains {words}.")
+        nothing = ", which may be nothing" if _may_be_nothing(finding) else ""
+        sentences.append(f"{fit} explains {words}{nothing}.")
     if finding.gap_before is not None and finding.gap_after is not None:
         if finding.closed is None:
             sentences.append(f"How much {fit[0].lower()}{fit[1:]} explains is not known.")

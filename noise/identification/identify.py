@@ -217,8 +217,8 @@ def _notes(
     notes = []
     if not held_out:
         notes.append(
-            "fewer than three conditions: the laws are judged by the recordings they were fitted "
-            "to; record more speeds"
+            "too few conditions to hold one out: the laws are judged by the recordings they were "
+            "fitted to; record more speeds"
         )
     best = scores[0]
     chosen = next(s for s in scores if s.law == candidate.name)

@@ -232,7 +232,9 @@ def likely_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
 
 
 def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
-    return name in (diagnosis.verdict or ("none",)) and is_named(diagnosis)
+    if not diagnosis.verdict:
+        return name == "none" and diagnosis.probabilities.get(name, 1.0) >= 0.5
+    return name in diagnosis.verdict and is_named(diagnosis)
 
 
 def _likely(diagnosis: Diagnosis) -> list[b.Block]:
@@ -269,7 +271,8 @@ def _cause_row(diagnosis: Diagnosis, name: str, chance: float) -> list[b.Cell | 
         gaps = (
             f"gap {number(finding.gap_before)}, with parameters refitted "
             f"{number(finding.gap_recalibrated)}, with the effect {number(finding.gap_after)}; it "
-            f"explains {percent(None if own is None else min(own, 1.0))} of what refitting leaves"
+            f"explains {'an unknown share' if own is None else percent(min(own, 1.0))} of what "
+            "refitting leaves"
         )
     return [
         b.Cell(arrow + cause.name, cause.clause),
@@ -341,8 +344,10 @@ def _details(diagnosis: Diagnosis) -> list[b.Block]:
         ),
     }  # fmt: skip
     missing = {
-        "Where it differs most surely": "Nowhere surely: no single channel, band or phase differs "
-        "at p = 0.05 or below, all looks counted.",
+        "Where it differs most surely": "Nothing was compared."
+        if diagnosis.bench
+        else "Nowhere surely: no single channel, band or phase differs at p = 0.05 or below, all "
+        "looks counted.",
         _PARAMETERS: NOT_DETERMINED.capitalize() + ".",
     }
     notes = {_PARAMETERS: _OF_ALL} if diagnosis.parameters else {}
@@ -417,14 +422,15 @@ def waterfall(diagnosis: Diagnosis) -> list[b.Block]:
         gap = after
     if steps:
         rows.append(("what is left", cell(0.0, gap, "", f"{gap:.2f}")))
-    if before <= floor:
-        words = words or "The gap is no larger than that of repeats; there is nothing to explain."
+    if before - floor < CLOSABLE:
+        words = words or (
+            "On these recordings the gap as a whole is hardly larger than that of repeats; what "
+            "differs shows in single figures."
+        )
     elif steps and not words:
         share = percent(min(closed_fraction(before, gap, floor), 1.0))
         words = f"Refitted parameters explain {share} of the deviation beyond that of repeats."
-    elif before - floor < CLOSABLE:
-        words = words or "On these recordings the gap is hardly larger than that of repeats."
-    held_out = diagnosis.held_out
+    held_out = diagnosis.held_out if fitted is not None else ()
     of, unseen = "all recordings", "recordings that this fit did not use"
     if held_out:
         listed = f"{unseen}: {', '.join(held_out)}"

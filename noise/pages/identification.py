@@ -217,8 +217,12 @@ def _answer(result: Identification) -> list[str]:
     return [
         f"Law of friction: {result.law.replace('_', ' ')} ({chosen_law.words}; "
         f"{chosen_law.in_rig_file} in the rig file). Within a cycle it leaves "
-        f"{100.0 * chosen.missed:.1f} % of the oscillation unexplained, and "
-        f"{100.0 * chosen.held_out:.1f} % of that of recordings that its fit did not use.",
+        f"{100.0 * chosen.missed:.1f} % of the oscillation unexplained"
+        + (
+            f", and {100.0 * chosen.held_out:.1f} % of that of recordings that its fit did not use."
+            if result.held_out
+            else "; no recording was held out."
+        ),
         *stiffness,
     ]
 

@@ -8,14 +8,20 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest, kstest
 
-from models.condition import Condition
+from models.condition import Condition, KnownCondition
 from models.recording import Channel, Recording
 from models.rig_file import load_material_rig, load_rig
 from noise.diagnosis.case import read_case
 from noise.diagnosis.floor import floor_widening, reference, references_of
 from noise.diagnosis.gap import gap_of
 from noise.diagnosis.signature import GROUPS, NAMES, signature
-from noise.diagnosis.simulated.repeats import Scatter, condition_key, nominal_repeats
+from noise.diagnosis.simulated.repeats import (
+    Scatter,
+    condition_key,
+    nominal_repeats,
+    plan_repeat,
+    repeat_motion,
+)
 from noise.diagnosis.simulated.transfer_functions import TransferFunctionCache
 from tests.blind.cases import run_case, write_case
 from tests.blind.design import draw_design
@@ -130,3 +136,13 @@ def test_one_long_recording_that_drifts_widens_the_floor(transfers):
     for one, widest in ((steady, 1.0), (drifting, 0.95)):
         narrow = gap_of([signature(one)], [known]).distance
         assert repeat_gap([one], repeats).distance <= widest * narrow
+
+
+@pytest.mark.parametrize("speed", [10.0, 12.0])
+def test_a_rig_that_slides_has_rung_out_before_a_repeat_is_recorded(speed):
+    at = KnownCondition(speed, 0.279e-3, 2214.0)
+    plan = plan_repeat(load_material_rig("fluorocarbon"), at, (), rate=90e3, seconds=0.5)
+    motion = repeat_motion(plan, np.random.default_rng(0))
+    assert motion.torque.size == plan.n_settling + plan.n_recorded
+    recorded = motion.torque[plan.n_settling :]
+    assert recorded.std() < 1e-6 * recorded.mean()

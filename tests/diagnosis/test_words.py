@@ -101,3 +101,20 @@ def test_a_fit_that_closes_nothing_is_said_to(figures, words):
 def test_only_impossible_and_certain_are_written_as_0_and_100_per_cent(share):
     assert (percent(share) == "100 %") == (share == 1.0)
     assert (percent(share) == "0 %") == (share == 0.0)
+
+
+def test_a_gap_below_that_of_repeats_is_not_more_than_they_differ_by():
+    sentence = verdict_sentence(replace(none(), gap=0.66, p_value=0.001))
+    assert "as repeats do" in sentence
+    assert "more than" not in sentence
+
+
+def test_a_gap_without_a_likely_cause_names_what_the_table_has_first():
+    chances = {"partial_slip": 0.47, "none": 0.43, "parameters": 0.04}
+    sentence = verdict_sentence(replace(none(), gap=1.31, p_value=0.005, probabilities=chances))
+    assert "it may be partial slip (47 %) or chance (43 %)" in sentence
+
+
+def test_a_fit_whose_interval_holds_nothing_says_so():
+    effect = replace(one_effect().effects[0], closed=0.06, closed_low=-0.01, closed_high=0.13)
+    assert "which may be nothing" in fit_sentence(effect)

@@ -69,8 +69,8 @@ def refuse_unusable(recording: Recording, shortest: float) -> None:
     """
     if not recording.calibrated:
         raise ParameterError(
-            "is not in physical units; state unit and scale of each channel in a sidecar, with "
-            '"calibrated": true'
+            "is not in physical units; state unit and scale of each channel, speed, interference "
+            'and support in a sidecar (the same name with .json), with "calibrated": true'
         )
     if recording.rate < LEAST_RATE:
         raise ParameterError(f"is sampled at {recording.rate:g} Hz; {LEAST_RATE:g} at least")
@@ -89,7 +89,14 @@ def wrong_speed(levels: Sequence[Levels]) -> str:
     far = int(np.count_nonzero(np.abs(np.log(np.abs(ratios) + 1e-12)) > 2.0 * _SPEED))
     if not far:
         return ""
-    return f"the angle turns at another speed than stated in {far} of {ratios.size} recordings"
+    worst = max(
+        (one for one in levels if one.turned is not None),
+        key=lambda one: float(abs(np.log(abs((one.turned or 0.0) / one.speed) + 1e-12))),
+    )
+    return (
+        f"the angle turns at another speed than stated in {far} of {ratios.size} recordings: at "
+        f"{worst.turned or 0.0:.3g} instead of {worst.speed:.3g} rad/s in the farthest"
+    )
 
 
 def speed_words(ratio: float, stated: float) -> str:

@@ -28,7 +28,7 @@ from noise.diagnosis.fit.case_comparison import CaseComparison
 from noise.diagnosis.fit.closing import CLOSABLE, closed_of, rms, room_of
 from noise.diagnosis.fit.fit import Fitted, fit_effects, fit_parameters, split
 from noise.diagnosis.simulated.model_runs import Model
-from noise.diagnosis.words import joined
+from noise.diagnosis.words import joined, percent
 from sim.effects import EFFECTS, irregular_effects
 from sim.effects.effect import Effect
 
@@ -287,8 +287,8 @@ def fit_notes(judged: Judged) -> list[str]:
     if fit is not None and fit.share < 1.0:
         notes.append(
             f"{joined(fit.names)} as fitted overshoots in the recordings held out: "
-            f"{fit.share:.0%} of it is taken, which these have settled, so what it closes of them "
-            "is no forecast"
+            f"{percent(fit.share)} of it is taken, which these have settled, so what it closes of "
+            "them is no forecast"
         )
     notes += [
         f"{' and '.join(sorted(names))} was not fitted, since no model of it can be simulated: "

@@ -229,6 +229,8 @@ def _improved_rig(
         explain of all of them.
     """
     before = rms(comparison.squared(Model(), held))
+    if before <= 1.0:  # there is nothing to close
+        return None
     for model in _offered(comparison, fitted_to, alone, effects, seed):
         with suppress(ParameterError):  # it breaks down in one of its repeats
             if rms(comparison.squared(model, held)) > min(before, 2.0 * _CLOSED):
@@ -237,7 +239,7 @@ def _improved_rig(
             # about to change its regime.
             own = comparison.compared_about(model)
             after = rms(own.squared(model, held))
-            made = _made(case, model) if after <= _CLOSED else None
+            made = _made(case, model) if after <= min(_CLOSED, before) else None
             if made is None:
                 continue
             answer = first_answer(replace(case, rig=made[1]), comparison.library, posterior, seed)
