@@ -155,3 +155,11 @@ def test_rig_files_conditions_and_recordings_are_heard_back_to_back_at_one_gain(
     told = parts[0]["level_db"] - parts[1]["level_db"]
     assert 20 * np.log10(one.std() / other.std()) == pytest.approx(told, abs=0.1)
     assert abs(told) > 1.0
+
+
+def test_a_sound_of_two_tracks_is_said_to_be_rendered_by_one(tmp_path, capsys):
+    soundfile.write(
+        tmp_path / "two.wav", np.stack([0.1 * tone(), 0.1 * tone(300.0)], axis=1), 48_000
+    )
+    render(tmp_path / "two.wav", "--out", tmp_path / "sound.wav")
+    assert capsys.readouterr().err.count("two.wav: 1 of 2 channels of sound pressure") == 1
