@@ -95,8 +95,8 @@ def _print_answer(options: Namespace, diagnosis: Diagnosis, printed: set[str]) -
         from noise.diagnosis.improved_file import improved_sentence
 
         say(
-            "improved.toml is a fit of its own, in forms that a rig file can state, compared with "
-            f"repeats of its own. {improved_sentence(diagnosis.improvement)}"
+            "improved.toml is the simplest fit that closes the gap, in forms that a rig file can "
+            f"state, compared with repeats of its own. {improved_sentence(diagnosis.improvement)}"
         )
 
 

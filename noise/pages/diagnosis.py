@@ -164,8 +164,9 @@ def _improved(diagnosis: Diagnosis) -> list[b.Block]:
         ),
         b.Text(
             "Do not trust it at speeds, interferences or supports beyond those recorded. An effect "
-            "that closes the gap need not be its cause. It is a fit of its own, in forms that a "
-            "rig file can state, compared with repeats of its own; so its gap is not that above. "
+            "that closes the gap need not be its cause. It is the simplest fit that closes it, in "
+            "forms that a rig file can state, compared with repeats of its own; so its gap is not "
+            "that above. "
             "Pictures and sounds below are of it. How well each number is known stands in the "
             "file.",
             "soft small",
