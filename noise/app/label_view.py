@@ -24,7 +24,7 @@ from noise.app.gate import body
 from noise.app.labels import Labels
 from noise.app.opened import Opened
 from noise.app.requests import choice, number
-from noise.base.labels import LABELS
+from noise.base.labels import LABELS, SURROUNDINGS
 from noise.base.progress import LINES, say
 from noise.base.tables import plain_cell
 from noise.labels.corrections import version
@@ -97,10 +97,12 @@ def routes(opened: Opened) -> list[BaseRoute]:
     def undone(_: Request, content: dict[str, Any]) -> Response:
         return JSONResponse(_segments(*labels.undo(redo=content.get("redo") is True)))
 
-    def labelled(_: Request, __: dict[str, Any]) -> Response:
+    def labelled(_: Request, content: dict[str, Any]) -> Response:
+        place = choice(content, "surroundings", SURROUNDINGS)
         if not labelling.running:
             paths = [str(path.absolute()) for path in opened.sources]
-            labelling.start(["label", "--out", str(labels.path), "--", *paths])
+            where = ["--surroundings", place] if place else []
+            labelling.start(["label", *where, "--out", str(labels.path), "--", *paths])
         return JSONResponse(state())
 
     def _segments(index: int, rows: Sequence[Row]) -> dict[str, object]:

@@ -92,6 +92,7 @@ def test_labels_arrive_while_they_are_computed_and_the_table_holds_them(browser,
     with served_app(tmp_path) as app:
         page = mounted(browser, app)
         app.correct(1, "creak", 0.0, 0.5)
+        page.get_by_label("Where the sounds were recorded").select_option("car")
         page.get_by_role("button", name="Label 3", exact=True).click()
         page.wait_for_selector(f"{ROW} >> text=refused")
         page.wait_for_function("() => !list.running")

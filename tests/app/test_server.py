@@ -127,6 +127,12 @@ def test_what_is_asked_wrongly_is_said_in_one_line(app, query):
     assert query.split("=")[0] in json.loads(said)["error"]
 
 
+def test_labelling_for_unknown_surroundings_is_refused(app):
+    status, said = app.request("api/label", {"surroundings": "moon"})
+    assert status == 400
+    assert "any, car, rig" in json.loads(said)["error"]
+
+
 def test_numbers_that_are_none_are_no_json(app):
     def refuse(word):
         raise AssertionError(word)

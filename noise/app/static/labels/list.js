@@ -8,6 +8,8 @@ const ALWAYS = ["", "creak", "squawk", "squeal", "none", "unknown"];
 const MEANING = { none: "no creak, squawk or squeal", unknown: "a noise that may be none of the three" };
 const ORDERS = { "": "as found", "name asc": "name", "label asc": "label", "frequency asc": "lowest frequency first", "frequency desc": "highest frequency first", "level desc": "loudest first", "duration desc": "longest first", "least_sure desc": "least certain first" };
 
+const PLACES = { "": "recorded: see sidecar", rig: "recorded at a rig", car: "recorded in a car", any: "recorded anywhere" };
+
 let list = null;
 
 // `onOpen` opens a recording; `onSeen` gets the version of the labels of the open one.
@@ -44,16 +46,17 @@ export class RecordingList {
     }
     this.stateLine = made("span");
     this.labelButton = made("button", { type: "button", hidden: true });
+    this.place = made("select", { ariaLabel: "Where the sounds were recorded", title: "What else may be heard there decides how sure a name has to be.", hidden: true }, ...Object.entries(PLACES).map(([value, textContent]) => made("option", { value, textContent })));
     this.labelButton.addEventListener("click", async () => {
       this.labelButton.disabled = true;
-      await api("label", {}).finally(() => { this.labelButton.disabled = false; });
+      await api("label", { surroundings: this.place.value }).finally(() => { this.labelButton.disabled = false; });
       this.load();
     });
     this.box = made("div", { className: "rows", tabIndex: 0, id: "recordings", role: "listbox", ariaLabel: "Recordings" });
     this.empty = made("p", { className: "empty", hidden: true });
     element.replaceChildren(made("div", { className: "recording-list" },
       made("div", { className: "line" }, this.find, this.order), this.kinds,
-      made("div", { className: "line" }, this.labelButton, this.stateLine),
+      made("div", { className: "line" }, this.labelButton, this.place, this.stateLine),
       this.empty, this.box));
     addEventListener("focus", () => onceShown(this.box, () => this.load())); // another page may have changed the table
     this.box.addEventListener("click", ({ target }) => { const row = target.closest("[role=option]"); if (row) this.#open(this.rows.findIndex((one) => one.id === row.shown.id)); });
@@ -104,7 +107,7 @@ export class RecordingList {
     }
     const left = state.total - state.done, count = (number) => number.toLocaleString("en");
     this.running = state.running;
-    this.labelButton.hidden = state.running || !left;
+    this.labelButton.hidden = this.place.hidden = state.running || !left;
     this.labelButton.textContent = state.done ? `Label ${count(left)} more` : `Label ${count(left)}`;
     this.stateLine.textContent = state.message;
     this.empty.hidden = this.rows.length > 0;
