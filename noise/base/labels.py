@@ -61,3 +61,6 @@ LABEL_COLOURS = {label: LABEL_LOOKS[label].colour for label in LABELS}
 
 SURROUNDINGS = ("any", "car", "rig")
 """Places of recording: other sounds to expect there set the confidence needed to name a noise."""
+
+SENSITIVITY = (0.1, 10.0)
+"""Least and largest factor on the odds of a noise [-]."""

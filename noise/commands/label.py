@@ -13,7 +13,7 @@ from typing import Any
 
 from models.errors import ParameterError
 from noise.base.files import check_target, locked
-from noise.base.labels import SURROUNDINGS
+from noise.base.labels import SENSITIVITY, SURROUNDINGS
 from noise.base.progress import counted, note, report
 from noise.base.tables import TABLE_ENDINGS, check_table_path, write_table
 from noise.commands.batch import BATCH, run_batch
@@ -24,7 +24,7 @@ OPTIONS = (
     Option("--map PICTURE", Path),
     Option("--classifier FILE.npz", Path),
     Option("--surroundings rig|car|any", one_of(*SURROUNDINGS)),
-    Option("--sensitivity RATIO", number(least=0.1, most=10.0), 1.0),
+    Option("--sensitivity RATIO", number(least=SENSITIVITY[0], most=SENSITIVITY[1]), 1.0),
     *CALIBRATION,
 )
 
@@ -72,10 +72,10 @@ def _note_false_names(counts: Mapping[str, Any], sensitivity: float) -> None:
         rate = counts[nearest]
         other = "" if float(nearest) == sensitivity else ", the nearest that was counted"
         note(
-            f"without logged conditions and at a sensitivity of {nearest}{other}, real "
-            "background sounds of these surroundings got "
-            f"{rate['an_hour']:.0f} false names per hour ({rate['low']:.0f} to {rate['high']:.0f} "
-            f"at 95 %: {rate['names']} in {rate['hours']:g} h)"
+            f"without logged conditions and at a sensitivity of {nearest}{other}, real background "
+            f"sounds of these surroundings got {rate['an_hour']:.0f} false names per hour "
+            f"({rate['low']:.0f} to {rate['high']:.0f} at 95 %: {rate['names']} in "
+            f"{rate['hours']:g} h)"
         )
 
 

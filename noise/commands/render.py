@@ -160,14 +160,14 @@ def _read(path: Path, full_scale: float | None) -> Recording:
     from noise.recordings.files import open_blocks
 
     with open_blocks(path, full_scale=full_scale) as recording:
-        _note_tracks(path.name, sum(one.kind == "pressure" for one in recording.channels))
+        _note_tracks(path, sum(one.kind == "pressure" for one in recording.channels))
         return pressure_recording(recording)
 
 
 @cache  # a recording is read twice
-def _note_tracks(name: str, n: int) -> None:
+def _note_tracks(path: Path, n: int) -> None:
     if n > 1:
-        note(f"{name}: 1 of {n} channels of sound pressure is rendered")
+        note(f"{path.name}: 1 of {n} channels of sound pressure is rendered")
 
 
 def _run(name: str, options: Namespace, rig: str) -> tuple[_Source, tuple[str, ...]]:

@@ -61,7 +61,7 @@ _MAY_BE = {
     "none": "chance", "unknown": "something unknown", "parameters": "parameters that are off"
 }  # fmt: skip
 
-_LIKELY = 0.5
+LIKELY = 0.5
 """Least probability of a cause that is named [-]: it is likelier than not."""
 
 _NOT_AT_ALL = 0.5
@@ -215,7 +215,7 @@ def is_named(diagnosis: Diagnosis) -> bool:
     False
     """
     chances = [diagnosis.probabilities.get(name, 1.0) for name in diagnosis.verdict]
-    return min(chances, default=1.0) >= _LIKELY and not _contradicted(diagnosis)
+    return min(chances, default=1.0) >= LIKELY and not _contradicted(diagnosis)
 
 
 def _contradicted(diagnosis: Diagnosis) -> list[str]:
@@ -401,11 +401,6 @@ def closed_words(finding: EffectFinding | None, of: str = "", interval: str = ""
     return f"{words} ({interval}{low} to {high})" if low != high else words
 
 
-def _may_be_nothing(finding: EffectFinding) -> bool:
-    low = finding.closed_low
-    return low is not None and low <= _NOTHING < (finding.closed or 0.0)
-
-
 def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
     """Return how far a fit with an effect closes the gap; empty if that was not determined.
 
@@ -426,8 +421,10 @@ def fit_sentence(finding: EffectFinding, fit: str = "The fit") -> str:
     sentences = []
     if finding.closed is not None:
         words = closed_words(finding, " of the deviation beyond that of repeats", "90 % interval ")
-        nothing = ", which may be nothing" if _may_be_nothing(finding) else ""
-        sentences.append(f"{fit} explains {words}{nothing}.")
+        low = finding.closed_low
+        if low is not None and low <= _NOTHING < finding.closed:
+            words += ", which may be nothing"
+        sentences.append(f"{fit} explains {words}.")
     if finding.gap_before is not None and finding.gap_after is not None:
         if finding.closed is None:
             sentences.append(f"How much {fit[0].lower()}{fit[1:]} explains is not known.")

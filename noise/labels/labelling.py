@@ -11,7 +11,7 @@ from typing import Any
 
 from models.errors import ParameterError
 from noise.base.files import locked
-from noise.base.labels import SURROUNDINGS
+from noise.base.labels import SENSITIVITY, SURROUNDINGS
 from noise.base.model_file import model_digest
 from noise.base.tables import check_table_path
 from noise.batch.journal import open_journal
@@ -87,8 +87,9 @@ def label(
     """
     if workers < 1:
         raise ParameterError(f"workers = {workers} must be 1 or more")
-    if not 0.1 <= sensitivity <= 10.0:
-        raise ParameterError(f"sensitivity = {sensitivity:g} must be from 0.1 to 10")
+    least, most = SENSITIVITY
+    if not least <= sensitivity <= most:
+        raise ParameterError(f"sensitivity = {sensitivity:g} must be from {least:g} to {most:g}")
     check_table_path(out)
     given = [paths] if isinstance(paths, str | Path) else paths
     jobs = find_jobs([Path(path) for path in given])

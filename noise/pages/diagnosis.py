@@ -24,6 +24,7 @@ from noise.diagnosis.outcome import (
     as_json,
 )
 from noise.diagnosis.sentences import (
+    LIKELY,
     agreement_sentence,
     answer,
     closed_words,
@@ -166,9 +167,8 @@ def _improved(diagnosis: Diagnosis) -> list[b.Block]:
             "Do not trust it at speeds, interferences or supports beyond those recorded. An effect "
             "that closes the gap need not be its cause. It is the simplest fit that closes it, in "
             "forms that a rig file can state, compared with repeats of its own; so its gap is not "
-            "that above. "
-            "Pictures and sounds below are of it. How well each number is known stands in the "
-            "file.",
+            "that above. Pictures and sounds below are of it. How well each number is known stands "
+            "in the file.",
             "soft small",
         ),
     ]
@@ -234,7 +234,7 @@ def likely_causes(diagnosis: Diagnosis) -> tuple[dict[str, float], int]:
 
 def _is_verdict(diagnosis: Diagnosis, name: str) -> bool:
     if not diagnosis.verdict:
-        return name == "none" and diagnosis.probabilities.get(name, 1.0) >= 0.5
+        return name == "none" and diagnosis.probabilities.get(name, 1.0) >= LIKELY
     return name in diagnosis.verdict and is_named(diagnosis)
 
 

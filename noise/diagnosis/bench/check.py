@@ -80,22 +80,20 @@ def refuse_unusable(recording: Recording, shortest: float) -> None:
 
 def wrong_speed(levels: Sequence[Levels]) -> str:
     """Return a finding if the angle's speed differs from the stated one; otherwise empty."""
-    ratios = np.array([one.turned / one.speed for one in levels if one.turned is not None])
-    if not ratios.size:
+    speeds = np.array([(one.turned, one.speed) for one in levels if one.turned is not None])
+    if not speeds.size:
         return ""
-    stated = float(np.median([abs(one.speed) for one in levels if one.turned is not None]))
-    if words := speed_words(float(np.median(ratios)), stated):
+    turned, stated = speeds.T
+    ratios = turned / stated
+    if words := speed_words(float(np.median(ratios)), float(np.median(np.abs(stated)))):
         return words
-    far = int(np.count_nonzero(np.abs(np.log(np.abs(ratios) + 1e-12)) > 2.0 * _SPEED))
+    off = np.abs(np.log(np.abs(ratios) + 1e-12))
+    far, worst = int(np.count_nonzero(off > 2.0 * _SPEED)), int(off.argmax())
     if not far:
         return ""
-    worst = max(
-        (one for one in levels if one.turned is not None),
-        key=lambda one: float(abs(np.log(abs((one.turned or 0.0) / one.speed) + 1e-12))),
-    )
     return (
         f"the angle turns at another speed than stated in {far} of {ratios.size} recordings: at "
-        f"{worst.turned or 0.0:.3g} instead of {worst.speed:.3g} rad/s in the farthest"
+        f"{turned[worst]:.3g} instead of {stated[worst]:.3g} rad/s in the farthest"
     )
 
 

@@ -256,10 +256,8 @@ def _rings(motion: Motion) -> bool:
     quarter = (motion.torque.size - first) // 4
     if quarter < 2 or motion.stuck[first:].any():
         return False
-    early, late = (
-        float(part.std())
-        for part in (motion.torque[first : first + quarter], motion.torque[-quarter:])
-    )
+    early = float(motion.torque[first : first + quarter].std())
+    late = float(motion.torque[-quarter:].std())
     return early > _SILENT * abs(float(motion.torque.mean())) and late < _DYING * early
 
 

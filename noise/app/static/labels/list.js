@@ -7,8 +7,9 @@ const KINDS = { "": "all", creak: "creak", squawk: "squawk", squeal: "squeal", n
 const ALWAYS = ["", "creak", "squawk", "squeal", "none", "unknown"];
 const MEANING = { none: "no creak, squawk or squeal", unknown: "a noise that may be none of the three" };
 const ORDERS = { "": "as found", "name asc": "name", "label asc": "label", "frequency asc": "lowest frequency first", "frequency desc": "highest frequency first", "level desc": "loudest first", "duration desc": "longest first", "least_sure desc": "least certain first" };
-
 const PLACES = { "": "recorded: see sidecar", rig: "recorded at a rig", car: "recorded in a car", any: "recorded anywhere" };
+
+const choices = (texts) => Object.entries(texts).map(([value, textContent]) => made("option", { value, textContent }));
 
 let list = null;
 
@@ -38,7 +39,7 @@ export class RecordingList {
     Object.assign(this, { onOpen, onSeen });
     let wait;
     this.find = made("input", { type: "search", placeholder: "find by name", ariaLabel: "Find by name", oninput: () => { clearTimeout(wait); wait = setTimeout(() => this.#ask(this.label), 120); } });
-    this.order = made("select", { ariaLabel: "Order", onchange: () => this.#ask(this.label) }, ...Object.entries(ORDERS).map(([value, textContent]) => made("option", { value, textContent })));
+    this.order = made("select", { ariaLabel: "Order", onchange: () => this.#ask(this.label) }, ...choices(ORDERS));
     this.kinds = made("div", { className: "kinds", role: "group", ariaLabel: "Show recordings with" });
     for (const [kind, text] of Object.entries(KINDS)) {
       const onclick = () => this.#ask(this.label === kind ? "" : kind);
@@ -46,7 +47,7 @@ export class RecordingList {
     }
     this.stateLine = made("span");
     this.labelButton = made("button", { type: "button", hidden: true });
-    this.place = made("select", { ariaLabel: "Where the sounds were recorded", title: "What else may be heard there decides how sure a name has to be.", hidden: true }, ...Object.entries(PLACES).map(([value, textContent]) => made("option", { value, textContent })));
+    this.place = made("select", { ariaLabel: "Where the sounds were recorded", title: "What else may be heard there decides how sure a name has to be.", hidden: true }, ...choices(PLACES));
     this.labelButton.addEventListener("click", async () => {
       this.labelButton.disabled = true;
       await api("label", { surroundings: this.place.value }).finally(() => { this.labelButton.disabled = false; });
